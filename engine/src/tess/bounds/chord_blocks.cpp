@@ -82,22 +82,34 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
   bound_exactly(set, block, hints, in_block ? ~0u : wanted);
 }
 
+SecondDerivatives ChordBlocks::piece(std::size_t block, std::size_t lane, std::size_t which,
+                                     const Products* products) const {
+  const double unit = unit_[block * lanes + lane];
+  const float* const d = pieces_.data() + block * block_pieces + which * 3 * lanes + lane;
+  SecondDerivatives piece{unit * double(d[0]), unit * double(d[lanes]), unit * double(d[2 * lanes])};
+  if (!products || !products->values()) return piece;
+  const float* const product = products->values() + which * 3 * lanes + lane;
+  piece.uu_vv = unit * unit * double(product[0]);
+  piece.uu_uv = unit * unit * double(product[lanes]);
+  piece.uv_vv = unit * unit * double(product[2 * lanes]);
+  return piece;
+}
+
 ChordBound ChordBlocks::chord(std::size_t block, std::size_t lane, const Products* products) const {
   ChordBound::Pieces pieces;
-  const double unit = unit_[block * lanes + lane];
-  const float* const of_products = products ? products->values() : nullptr;
-  for (std::size_t k = 0; k < piece_count; ++k) {
-    const float* d = pieces_.data() + block * block_pieces + k * 3 * lanes + lane;
-    pieces[k].uu = unit * double(d[0]);
-    pieces[k].uv = unit * double(d[lanes]);
-    pieces[k].vv = unit * double(d[2 * lanes]);
-    if (!of_products) continue;
-    const float* product = of_products + k * 3 * lanes + lane;
-    pieces[k].uu_vv = unit * unit * double(product[0]);
-    pieces[k].uu_uv = unit * unit * double(product[lanes]);
-    pieces[k].uv_vv = unit * unit * double(product[2 * lanes]);
-  }
+  for (std::size_t k = 0; k < piece_count; ++k) pieces[k] = piece(block, lane, k, products);
   return ChordBound(pieces);
+}
+
+double ChordBlocks::distance_of(PatchSegments segments, std::size_t block, std::size_t lane,
+                                const Products* products) const {
+  if (!segments.are_uniform()) return chord(block, lane, products).distance_of(segments);
+  const Rates rates = segments.rates();
+  const auto [first, count] = ChordBound::split(rates);
+  double most = 0;
+  for (int k = first; k < first + count; ++k)
+    most = std::max(most, piece(block, lane, static_cast<std::size_t>(k), products).chord(rates));
+  return most;
 }
 
 void ChordBlocks::Products::find(const ChordBlocks& chords, const PatchSet::Impl& set, std::size_t block) {

@@ -64,12 +64,11 @@ class ChordBlocks {
   /// Returns one patch's bound; `products`, if not null, sharpen it.
   ChordBound chord(std::size_t block, std::size_t lane, const Products* products = nullptr) const;
 
-  /// Returns one of ChordBound::pieces() without products.
-  SecondDerivatives piece(std::size_t block, std::size_t lane, std::size_t which) const {
-    const double unit = unit_[block * lanes + lane];
-    const float* d = pieces_.data() + block * block_pieces + which * 3 * lanes + lane;
-    return {unit * double(d[0]), unit * double(d[lanes]), unit * double(d[2 * lanes])};
-  }
+  /// Returns one of ChordBound::pieces().
+  SecondDerivatives piece(std::size_t block, std::size_t lane, std::size_t which,
+                          const Products* products = nullptr) const;
+  /// Returns ChordBound::distance_of().
+  double distance_of(PatchSegments segments, std::size_t block, std::size_t lane, const Products* products) const;
 
   struct Choice {
     Lanes<Rates> rates;           ///< 0 where no rates up to the most keep the distance

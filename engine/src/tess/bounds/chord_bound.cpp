@@ -45,7 +45,7 @@ ChordBound::ChordBound(const BezierPatch& patch, bool products) {
 }
 
 double ChordBound::distance(Rates rates) const {
-  const Split split = splits[rates.u % 2 == 0][rates.v % 2 == 0];
+  const Split split = ChordBound::split(rates);
   double most = 0;
   for (int k = split.first; k < split.first + split.count; ++k)
     most = std::max(most, pieces_[static_cast<std::size_t>(k)].chord(rates));

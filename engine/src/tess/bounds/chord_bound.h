@@ -122,11 +122,14 @@ class ChordBound {
   /// Returns the rates with the fewest cells that keep distance() <= tolerance > 0; empty if none up to `most` do.
   std::optional<Rates> cheapest(double tolerance, int most) const;
 
- private:
-  /// The pieces that rates use: their place in pieces_ and their number, by [split in u][split in v].
+  /// The pieces that rates use: their place in pieces() and their number.
   struct Split {
     int first, count;
   };
+  static Split split(Rates rates) { return splits[rates.u % 2 == 0][rates.v % 2 == 0]; }
+
+ private:
+  /// Splits by [split in u][split in v].
   static constexpr Split splits[2][2] = {{{0, 1}, {3, 2}}, {{1, 2}, {5, 4}}};
   /// Returns the rates with `fixed` along u or v and the smallest rate along the other parameter.
   std::optional<Rates> with_rate(double tolerance, int fixed, bool fixed_u, int most) const;

@@ -17,12 +17,14 @@ constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(s
 struct EdgeNeeds {
   std::uint16_t most = 1;  ///< the largest rate of the patches
   /// 1: the edge's rate must be even, for a patch whose triangles must not cross the middle.
-  std::uint16_t is_even = 0;
+  std::uint8_t is_even = 0;
+  std::uint8_t patches = 0;  ///< 0, 1, or 2 for more; twice the same one counts as two
 
   /// `never`: 1 for a patch none of whose triangles may cross the middle.
   void add(Segments along, std::uint16_t never) {
     most = std::max(most, static_cast<std::uint16_t>(along.rate()));
-    is_even = static_cast<std::uint16_t>(is_even | (never & along.parts_halves()));
+    is_even = static_cast<std::uint8_t>(is_even | (never & along.parts_halves()));
+    patches = static_cast<std::uint8_t>(std::min(patches + 1, 2));
   }
   Segments segments() const { return most + (most & is_even); }
 };

@@ -255,15 +255,12 @@ std::string CertifiedPlanner::wanted(double tolerance) const {
 }
 
 ProvenSegments CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
-                                                  ChordBlocks::Products& products, const ProvenSegments& best) const {
+                                                  const ChordBlocks::Products* products,
+                                                  const ProvenSegments& best) const {
   if (!is_spared(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
   const PatchSet::Slot slot = set_->slots[patch];
   const PatchSegments had = kept.segments[patch];
-  double keeps = chord(patch).distance_of(had);
-  if (!(keeps <= distance)) {
-    products.find(chords_, *set_, slot.block);
-    keeps = chords_.chord(slot.block, slot.lane, &products).distance_of(had);
-  }
+  double keeps = chords_.distance_of(had, slot.block, slot.lane, products);
   const bool by_halves = keeps <= distance;
   if (!by_halves) keeps = local_distance(patch, had);
   return keeps <= distance ? ProvenSegments{had, keeps, !by_halves && had.are_uniform()} : best;
@@ -310,7 +307,8 @@ void CertifiedPlanner::choose_block(std::size_t block, const Request& request, s
     } else if (request.kept.segments.empty()) {
       set_segments(k, proven, plan);
     } else {
-      set_segments(k, keep_by_distance(k, left[lane], request.kept, products, proven), plan);
+      const ChordBlocks::Products* const sharp = choice.sharpened >> lane & 1u ? &products : nullptr;
+      set_segments(k, keep_by_distance(k, left[lane], request.kept, sharp, proven), plan);
     }
   }
 }
@@ -335,9 +333,8 @@ Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPla
     if (kept.segments.empty()) {
       set_segments(k, (*fewest)[k], plan);
     } else {
-      ChordBlocks::Products products;
       const double left = tolerance - (roundings_[k] + fit_error_);
-      set_segments(k, keep_by_distance(k, left, kept, products, (*fewest)[k]), plan);
+      set_segments(k, keep_by_distance(k, left, kept, nullptr, (*fewest)[k]), plan);
     }
   }
   return {};

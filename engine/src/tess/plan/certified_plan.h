@@ -82,8 +82,8 @@ class CertifiedPlan {
     bool reversed = false, is_point = false;  ///< a point: `from` is a corner
   };
   void lay_out();
-  /// Counts open_edges(). `edges`: those of the planner, after welding.
-  void count_open_edges(const SharedEdges& edges);
+  /// Counts open_edges() of a mesh with cut patches. `edges`: those of the planner, after welding.
+  void count_open_edges_beside_loops(const SharedEdges& edges);
   std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
 
   std::vector<PatchSegments> segments_;
@@ -210,9 +210,10 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones where possible.
   ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int min_rate,
                         const Request& request, Rates rates) const;
-  /// Returns the kept segments where possible, else the best, if a distance is the only limit.
+  /// Returns the kept segments where possible, else the best, if a distance is the only limit. `products`: those that
+  /// the best ones come from; null if they come from none.
   ProvenSegments keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
-                                  ChordBlocks::Products& products, const ProvenSegments& best) const;
+                                  const ChordBlocks::Products* products, const ProvenSegments& best) const;
   /// Adds segments to the choices and returns those with which the patches together have the fewest triangles.
   Result<std::vector<ProvenSegments>> find_fewest(double tolerance, std::vector<SegmentChoices> choices,
                                                   const Execution& execution) const;

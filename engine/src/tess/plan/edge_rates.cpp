@@ -83,6 +83,14 @@ class BorderSegments {
   }
   void make_even(std::size_t patch, Side side) { needs_[edges_.edge(patch, side)].is_even = 1; }
 
+  /// Returns how many segments lie on edges with one border.
+  std::uint32_t open_edges() const {
+    std::uint32_t count = 0;
+    for (std::uint32_t edge = 0; edge < needs_.size(); ++edge)
+      if (needs_[edge].patches == 1) count += static_cast<std::uint32_t>(of_edge(edge, false).rate());
+    return count;
+  }
+
   /// Returns the segments of a patch's four borders.
   std::array<Segments, 4> of(std::size_t patch) const {
     return {border(patch, Side::v0), border(patch, Side::u1), border(patch, Side::v1), border(patch, Side::u0)};
@@ -93,8 +101,10 @@ class BorderSegments {
   Segments border(std::size_t patch, Side side) const {
     const std::uint32_t edge = edges_.edge(patch, side);
     if (edge == SharedEdges::none) return along(segments_[patch], side);
-    if (pieces_.empty()) return needs_[edge].segments();
-    return pieces_[edge].segments(is_against(patch, side), needs_[edge].is_even);
+    return of_edge(edge, !pieces_.empty() && is_against(patch, side));
+  }
+  Segments of_edge(std::uint32_t edge, bool against) const {
+    return pieces_.empty() ? needs_[edge].segments() : pieces_[edge].segments(against, needs_[edge].is_even);
   }
 
   std::span<const PatchSegments> segments_;
@@ -136,18 +146,27 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
     }
   };
   std::vector<std::pair<std::size_t, Side>> refused;
-  for_odd_borders([&](std::size_t k, Side side, double distance) {
-    if (!(distance <= tolerance)) refused.emplace_back(k, side);
-  });
+  std::vector<std::pair<std::size_t, float>> accepted;
+  const auto judge = [&](std::size_t k, Side side, double distance) {
+    if (!(distance <= tolerance)) {
+      refused.emplace_back(k, side);
+    } else {
+      accepted.emplace_back(k, rounded_up(distance));
+    }
+  };
+  for_odd_borders(judge);
   for (const auto& [k, side] : refused) borders.make_even(k, side);
-  for_odd_borders([&](std::size_t k, Side, double distance) {
-    assert(distance <= tolerance);
-    plan.bounds_[k] = std::max(plan.bounds_[k], rounded_up(distance));
-  });
+  if (!refused.empty()) {
+    refused.clear();
+    accepted.clear();
+    for_odd_borders(judge);
+    assert(refused.empty());
+  }
+  for (const auto& [k, distance] : accepted) plan.bounds_[k] = std::max(plan.bounds_[k], distance);
   plan.divisions_.reserve(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k)
     plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));
-  plan.count_open_edges(edges_);
+  plan.open_edges_ = borders.open_edges();
 }
 
 }  // namespace tessera::inline abi_0_1

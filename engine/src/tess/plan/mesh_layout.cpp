@@ -32,7 +32,7 @@ void CertifiedPlan::lay_out() {
   first_quad_[patches] = quads;
 }
 
-void CertifiedPlan::count_open_edges(const SharedEdges& edges) {
+void CertifiedPlan::count_open_edges_beside_loops(const SharedEdges& edges) {
   std::vector<std::uint32_t> borders(edges.count(), 0);
   const auto visit_border = [&](std::size_t patch, Side side, const auto& visit) {
     if (const std::uint32_t edge = edges.edge(patch, side); edge != SharedEdges::none)

@@ -87,7 +87,10 @@ void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
     const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
     const double rounding = planner_.own_rounding(group, {block, lane});
     (has_copies() ? own_roundings_ : planner_.roundings_)[patch] = rounding;
-    const bool keeps_shape = PatchShape::of(of.set.patches[patch], of.set.collapsed[patch]) == planner_.shapes_[patch];
+    const PatchShape& shape = planner_.shapes_[patch];
+    const EdgeMask collapsed = of.set.collapsed[patch];
+    const bool keeps_shape = collapsed.any() ? PatchShape::of(of.set.patches[patch], collapsed) == shape
+                                             : !shape.collapsed.any() && !shape.is_curve;
     if (!keeps_shape || !(rounding <= most)) is_unknown_ = true;
   }
 }
@@ -153,9 +156,12 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
       is_unknown_ = true;
       continue;
     }
+    const ChordBlocks::Products* const sharp = best.sharpened >> lane & 1u ? &products : nullptr;
     const ProvenSegments proven =
-        planner_.keep_by_distance(patch, left[lane], kept, products, {best.rates[lane], best.distance[lane]});
-    const double straddling = proven.anywhere ? 0 : straddling_distance(of, patch);
+        planner_.keep_by_distance(patch, left[lane], kept, sharp, {best.rates[lane], best.distance[lane]});
+    // If its segments change, its borders do, and redivided() proves them.
+    const bool is_kept = proven.segments == of.plan.segments()[patch];
+    const double straddling = proven.anywhere || !is_kept ? 0 : straddling_distance(of, patch);
     if (!(straddling <= left[lane])) is_redivided_ = true;
     const double given = of.tolerance - left[lane];
     set(of, patch, {proven.segments, proven.anywhere, rounded_up(std::max(proven.distance, straddling) + given)});

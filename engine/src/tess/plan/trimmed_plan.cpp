@@ -143,7 +143,7 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
       shares[c] *= 0.85 / excess[c];
     }
     if (!keeps) continue;
-    plan.count_open_edges(edges_);
+    plan.count_open_edges_beside_loops(edges_);
     for (const CutPatch& cut : plan.cuts_)
       if (cut.is_crossed) plan.crossed_.push_back(cut.patch);
     return {};
