@@ -174,8 +174,8 @@ MeshReport expect_joined(const Face& face, const Mesh& mesh) {
 }
 
 /// Expects a mesh within its bound, and its bound within the tolerance; with this many components less holes.
-void expect_good(const BSplineSurface& surface, const std::vector<TrimLoop>& loops, const Kept& kept,
-                 double tolerance, std::ptrdiff_t euler) {
+void expect_good(const BSplineSurface& surface, const std::vector<TrimLoop>& loops, const Kept& kept, double tolerance,
+                 std::ptrdiff_t euler) {
   Face face(surface, loops);
   const Mesh mesh = face.mesh(tolerance);
   ASSERT_GT(mesh.triangle_count(), 0u);
@@ -362,7 +362,9 @@ TEST(TrimmedFace, HasDoublePositionsAndJoinedNormals) {
   const Mesh smooth = face.mesh({.tolerance = 1e-3, .crease_angle = 0.1});
   std::map<std::array<float, 3>, std::array<float, 3>> normals;
   for (std::size_t k = 0; k < smooth.vertex_count(); ++k) {
-    const auto triple = [&](const std::vector<float>& of) { return std::array{of[3 * k], of[3 * k + 1], of[3 * k + 2]}; };
+    const auto triple = [&](const std::vector<float>& of) {
+      return std::array{of[3 * k], of[3 * k + 1], of[3 * k + 2]};
+    };
     const auto [at, is_new] = normals.emplace(triple(smooth.positions), triple(smooth.normals));
     ASSERT_TRUE(is_new || at->second == triple(smooth.normals)) << k;
   }

@@ -41,7 +41,7 @@ struct Tessellated {
   double tolerance = 0;
   std::size_t welded_borders = 0, open_edges = 0;
   std::vector<std::size_t> crossed;  ///< surfaces with loops that cannot be made polygons
-  double angle = 0;  ///< degrees
+  double angle = 0;                  ///< degrees
   std::size_t patches_without_angle = 0;
   double pixels = 0;
   double bound = 0;     ///< largest distance of mesh and surfaces; 0: unknown
@@ -179,7 +179,9 @@ Status run_tessellate(const Job& job, const Options& options, const CommonOption
   }();
   if (!made) return in_file(job.inputs[0], made.status());
   for (const std::size_t surface : made->crossed)
-    warn(loaded->in_surface(surface, {StatusCode::unsupported, "its trimming loops cannot be made a polygon: parts of it are left out"})
+    warn(loaded
+             ->in_surface(surface, {StatusCode::unsupported,
+                                    "its trimming loops cannot be made a polygon: parts of it are left out"})
              .message());
   {
     const auto phase = timings.phase("write");

@@ -76,8 +76,7 @@ struct Gathered {
     options.fit_error = fit_error;
     if (patches.empty() && surface_count > 0)
       return Status(StatusCode::invalid_argument, "trimming loops cut away every patch");
-    Result<PatchSet> set =
-        PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
+    Result<PatchSet> set = PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
     if (!set || trims.cuts.empty()) return set;
     trims.is_cut.resize(set->patch_count());
     for (const PatchTrims::Cut& cut : trims.cuts) trims.is_cut[cut.patch] = 1;
@@ -199,8 +198,8 @@ Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& optio
 Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> grids, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
     if (grids.size() != model.surfaces.size())
-      return Status(StatusCode::count_mismatch, "there are " + counted(grids.size(), "grid") + " for " +
-                                                    counted(model.surfaces.size(), "surface"));
+      return Status(StatusCode::count_mismatch,
+                    "there are " + counted(grids.size(), "grid") + " for " + counted(model.surfaces.size(), "surface"));
     ModelPatches patches(model, options);
     for (const PatchGrid& grid : grids)
       if (Status status = patches.add(grid); !status.ok()) return status;

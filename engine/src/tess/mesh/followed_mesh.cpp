@@ -61,7 +61,8 @@ Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution)
 Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                       const Execution& execution) {
   PatchSet::Impl& inner = impl_of(set);
-  if (inner.trims) return Status(StatusCode::unsupported, "meshes of patches that trimming loops cut cannot be updated");
+  if (inner.trims)
+    return Status(StatusCode::unsupported, "meshes of patches that trimming loops cut cannot be updated");
   if (Status status = start(set, edits, out, execution); !status.ok()) return status;
   CallProgress progress(execution, update_ends);
   // Edges and welds must be those of the plan: an update that finds edited patches has to find them anew.

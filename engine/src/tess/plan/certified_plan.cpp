@@ -223,8 +223,9 @@ ProvenSegments CertifiedPlanner::settle(std::size_t patch, const CellLimits& lim
   const auto proven_for = [&](PatchSegments segments) {
     return ProvenSegments{segments, chord.distance_of(segments, anywhere), anywhere};
   };
-  const auto graded =
-      min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform ? graded_segments(limits, rates) : std::nullopt;
+  const auto graded = min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform
+                          ? graded_segments(limits, rates)
+                          : std::nullopt;
   ProvenSegments proven = proven_for(graded ? *graded : rates);
   if (request.fewest && limits.chord) {
     SegmentChoices choices(proven_for(rates));

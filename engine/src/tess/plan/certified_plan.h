@@ -43,7 +43,7 @@ class CertifiedPlan {
   std::span<const Division> divisions() const { return divisions_; }
   /// The patches that loops cut, by growing patch. Their divisions are empty but for the borders' segments.
   std::span<const CutPatch> cuts() const { return cuts_; }
-  std::span<const std::uint32_t> crossed() const { return crossed_; }  ///< cut patches whose loops cross
+  std::span<const std::uint32_t> crossed() const { return crossed_; }    ///< cut patches whose loops cross
   std::span<const PatchSegments> segments() const { return segments_; }  ///< segments that each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
@@ -177,7 +177,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     bool fewest = false;  ///< see TessellationOptions::fewest
     KeptSegments kept = {};
     std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< for tolerances that messages propose
-    double share = 1;     ///< the part of what the limits leave that cells may take
+    double share = 1;      ///< the part of what the limits leave that cells may take
     bool uniform = false;  ///< whether segments are of one length
   };
   /// Makes a plan without a limit on its triangles.
@@ -238,7 +238,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The error of a tolerance that loops cannot keep.
   Status too_rough(const Request& request, std::size_t patch) const;
   /// Finds the borders of whole patches along the sides of cut ones.
-  void find_same_borders(CertifiedPlan& plan) const;
+  void find_same_borders(CertifiedPlan & plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,

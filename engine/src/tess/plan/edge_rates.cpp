@@ -110,9 +110,9 @@ class BorderSegments {
   std::span<const PatchSegments> segments_;
   const SharedEdges& edges_;
   std::vector<std::uint8_t> has_needs_;  ///< `[patch]`
-  std::vector<EdgeNeeds> needs_;       ///< `[edge]`
-  std::vector<PieceNeeds> pieces_;     ///< `[edge]`; empty if all segments are uniform
-  std::vector<std::uint8_t> against_;  ///< `[border]`; empty if all segments are uniform
+  std::vector<EdgeNeeds> needs_;         ///< `[edge]`
+  std::vector<PieceNeeds> pieces_;       ///< `[edge]`; empty if all segments are uniform
+  std::vector<std::uint8_t> against_;    ///< `[border]`; empty if all segments are uniform
 };
 
 }  // namespace

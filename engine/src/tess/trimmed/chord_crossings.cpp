@@ -27,10 +27,9 @@ std::optional<ParameterPoint> crossing(const Segment& p, const Segment& q) {
   const double pu = p.b.u - p.a.u, pv = p.b.v - p.a.v, qu = q.b.u - q.a.u, qv = q.b.v - q.a.v;
   const double along = ((q.a.u - p.a.u) * qv - (q.a.v - p.a.v) * qu) / (pu * qv - pv * qu);
   const double share = std::isfinite(along) ? std::clamp(along, 0.0, 1.0) : 0.5;
-  return ParameterPoint{std::clamp(p.a.u + share * pu, std::max(p.lower_u(), q.lower_u()),
-                                   std::min(p.upper_u(), q.upper_u())),
-                        std::clamp(p.a.v + share * pv, std::max(p.lower_v(), q.lower_v()),
-                                   std::min(p.upper_v(), q.upper_v()))};
+  return ParameterPoint{
+      std::clamp(p.a.u + share * pu, std::max(p.lower_u(), q.lower_u()), std::min(p.upper_u(), q.upper_u())),
+      std::clamp(p.a.v + share * pv, std::max(p.lower_v(), q.lower_v()), std::min(p.upper_v(), q.upper_v()))};
 }
 
 }  // namespace

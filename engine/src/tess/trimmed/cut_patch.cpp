@@ -61,8 +61,8 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   find_border_vertices(borders, limits.domain, out);
 }
 
-bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::size_t place,
-                        const TrimmedPatch& limits, const std::array<Segments, 4>& borders, CutPatch& out) {
+bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
+                        const std::array<Segments, 4>& borders, CutPatch& out) {
   const TrimRegion::Impl& impl = impl_of(region);
   const std::size_t a = place / impl.count_v(), b = place % impl.count_v();
   cutter_.begin(limits);
@@ -77,7 +77,8 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
                           : side == Side::v1 ? limits.domain.v1
                           : side == Side::u0 ? limits.domain.u0
                                              : limits.domain.u1;
-    const double from = along_u ? limits.domain.u0 : limits.domain.v0, to = along_u ? limits.domain.u1 : limits.domain.v1;
+    const double from = along_u ? limits.domain.u0 : limits.domain.v0,
+                 to = along_u ? limits.domain.u1 : limits.domain.v1;
     const auto is_even = [&](std::size_t k) {
       return points[k].at == line_at(from, to, borders[s], static_cast<int>(k));
     };

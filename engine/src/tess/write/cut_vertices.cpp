@@ -39,7 +39,8 @@ class CutWriter {
     std::uint32_t* index = out_.indices.data() + 3 * place;
     for (const CutPatch::Triangle& triangle : cut.triangles)
       for (const std::uint32_t vertex : triangle) *index++ = first + vertex;
-    if (!out_.patch.empty()) std::fill_n(out_.patch.begin() + static_cast<std::ptrdiff_t>(place), cut.triangles.size(), cut.patch);
+    if (!out_.patch.empty())
+      std::fill_n(out_.patch.begin() + static_cast<std::ptrdiff_t>(place), cut.triangles.size(), cut.patch);
   }
 
  private:
