@@ -42,7 +42,10 @@ std::size_t expect_no_cracks(const std::filesystem::path& folder) {
                                  << count->non_manifold << " non-manifold edges, " << count->report.degenerate_triangles
                                  << " degenerate triangles, " << count->report.non_finite_vertices
                                  << " vertices with NaN";
-      EXPECT_EQ(count->own_edges + count->cracks, count->report.open_edges) << path;
+      // Edges of triangles without area are not counted here.
+      if (count->report.degenerate_triangles == 0) {
+        EXPECT_EQ(count->own_edges + count->cracks, count->report.open_edges) << path;
+      }
       meshed += relative == 1e-2;
     }
   }

@@ -63,7 +63,9 @@ TEST_F(WriteModel, EveryModelComesBack) {
       const Model read = rewritten(model, folder_ / name, &facts);
       EXPECT_TRUE(facts.warnings.empty()) << file;
       expect_same_patches(model, read, file.string());
-      const PatchSet set = value_of(make_patch_set(model));
+      PatchSetOptions whole;
+      whole.trims = false;
+      const PatchSet set = value_of(make_patch_set(model, whole));
       EXPECT_EQ(facts.patches, set.patch_count()) << file;
       EXPECT_EQ(facts.fit_error.distance, set.fit_error().distance) << file;
       EXPECT_EQ(facts.fit_error.certified, set.fit_error().certified) << file;

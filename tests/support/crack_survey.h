@@ -30,8 +30,9 @@ struct CrackCount {
   std::size_t own_non_manifold = 0;
   std::size_t non_manifold = 0;  ///< the others
   bool folded = false;           ///< a patch lies upon itself: triangles where it turns back have no area
+  bool trimmed = false;          ///< loops cut it: triangles at chords below the resolution of floats have no area
   bool good() const {
-    return cracks == 0 && non_manifold == 0 && (folded || report.degenerate_triangles == 0) &&
+    return cracks == 0 && non_manifold == 0 && (folded || trimmed || report.degenerate_triangles == 0) &&
            report.non_finite_vertices == 0;
   }
 };
@@ -176,6 +177,7 @@ inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std
   count.bound = plan->bound();
   count.own_borders = borders.lone();
   count_edges(*mesh, borders, count);
+  count.trimmed = set.cut_count() > 0;
   // Along loops the plan says how many edges are open.
   if (set.cut_count() > 0 && report->open_edges > plan->open_edges()) {
     const std::size_t torn = report->open_edges - plan->open_edges();

@@ -1,15 +1,10 @@
 // Meshes of trimmed faces: within their bound in both directions, without cracks between patches.
 
-#include <tbb/global_control.h>
-
 #include <functional>
-#include <map>
 
 #include "support/triangle_distance.h"
 #include "tess_trim/plane_reference.h"
-#include "tessera/model.h"
-#include "tessera/nurbs_surface.h"
-#include "tessera/tessellation.h"
+#include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
 
 namespace tessera::test {
@@ -43,67 +38,10 @@ Kept outside_of(std::vector<std::pair<ParameterPoint, double>> discs, bool insid
           }};
 }
 
-BSplineSurface wavy() {
-  std::vector<Vec3> points;
-  for (int i = 0; i < 7; ++i)
-    for (int j = 0; j < 6; ++j) points.push_back({double(i), double(j), std::sin(1.3 * i) * std::cos(0.9 * j)});
-  const std::vector<double> u{0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4}, v{0, 0, 0, 0, 1, 2, 3, 3, 3, 3};
-  return value_of(BSplineSurface::polynomial(3, u, 3, v, points));
-}
-/// A quarter of a cylinder of radius 2, rational along u, over [0, 4] x [0, 3].
-BSplineSurface cylinder() {
-  const std::vector<Vec3> points{{2, 0, 0}, {2, 0, 6}, {2, 2, 0}, {2, 2, 6}, {0, 2, 0}, {0, 2, 6}};
-  const double w = std::sqrt(0.5);
-  const std::vector<double> u{0, 0, 0, 4, 4, 4}, v{0, 0, 3, 3}, weights{1, 1, w, w, 1, 1};
-  return value_of(BSplineSurface::rational(2, u, 1, v, points, weights));
-}
-BSplineSurface plane() {
-  const std::vector<double> u{0, 0, 4, 4}, v{0, 0, 3, 3};
-  const std::vector<Vec3> points{{0, 0, 1}, {0, 3, 1}, {4, 0, 1}, {4, 3, 1}};
-  return value_of(BSplineSurface::polynomial(1, u, 1, v, points));
-}
-
-/// A trimmed face, and what is made of it.
-struct Face {
-  Face(const BSplineSurface& surface, std::vector<TrimLoop> loops)
-      : model{.name = {}, .surfaces = {{.name = std::string("face"), .surface = surface, .trims = std::move(loops)}}},
-        grid(value_of(to_bezier(surface))),
-        set(value_of(make_patch_set(model))) {}
-
-  /// The mesh within a tolerance, whose bound is `bound`.
-  Mesh mesh(const TessellationOptions& options) {
-    const Tessellation plan = value_of(Tessellation::make(set, options));
-    bound = plan.bound();
-    open_edges = plan.open_edges();
-    Mesh made = value_of(plan.allocate());
-    const Status status = plan.run(set, made.views());
-    EXPECT_TRUE(status.ok()) << status.message();
-    return made;
-  }
-  Mesh mesh(double tolerance) { return mesh({.tolerance = tolerance}); }
-
-  Model model;
-  PatchGrid grid;
-  PatchSet set;
-  double bound = 0;
-  std::size_t open_edges = 0;
-};
-
 Vec3 position(const Mesh& mesh, std::uint32_t vertex) {
   const float* p = &mesh.positions[3 * std::size_t{vertex}];
   return mesh.origin + Vec3{p[0], p[1], p[2]};
 }
-ParameterPoint parameters(const Face& face, const Mesh& mesh, std::size_t triangle, const double (&shares)[3]) {
-  const Domain domain = face.set.source(mesh.patches[triangle]).domain;
-  ParameterPoint at{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float* p = &mesh.parameters[2 * std::size_t{mesh.indices[3 * triangle + k]}];
-    at.u += shares[k] * (domain.u0 + p[0] * (domain.u1 - domain.u0));
-    at.v += shares[k] * (domain.v0 + p[1] * (domain.v1 - domain.v0));
-  }
-  return at;
-}
-
 /// The distance of x from the kept part, near `at`: not above the true one's upper bounds, found by Newton's method.
 double distance_to_kept(const PatchGrid& grid, const Kept& kept, const Vec3& x, ParameterPoint at) {
   double best = 1e9;
@@ -244,17 +182,6 @@ TEST(TrimmedFace, LeavesOtherPatchesAsTheyAre) {
   EXPECT_EQ(positions_of(trimmed.mesh(1e-3), is_far), positions_of(plain.mesh(1e-3), is_far));
 }
 
-/// The area of a mesh in the parameters of its face.
-double plane_area(const Face& face, const Mesh& mesh) {
-  double sum = 0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const ParameterPoint a = parameters(face, mesh, t, {1, 0, 0}), b = parameters(face, mesh, t, {0, 1, 0}),
-                         c = parameters(face, mesh, t, {0, 0, 1});
-    sum += ((b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u)) / 2;
-  }
-  return sum;
-}
-
 // Discs apart from each other, kept or cut away: with centres on lines between patches, or touching these lines.
 TEST(TrimmedFace, OfRandomDiscsHasTheirAreaAndNoCracks) {
   std::mt19937 random(4);
@@ -291,124 +218,6 @@ TEST(TrimmedFace, OfRandomDiscsHasTheirAreaAndNoCracks) {
     // Lengths on the surface are at least those of the parameters: slivers are no wider than the tolerance.
     ASSERT_NEAR(plane_area(face, mesh), are_holes ? 12 - area : area, length_of_borders * tolerance + 1e-5);
   }
-}
-
-// Inside is odd parity: a bow tie keeps both of its triangles, two discs that overlap lose what they share.
-TEST(TrimmedFace, OfLoopsThatCrossKeepsWhatAnOddNumberEncloses) {
-  Face bow(wavy(), {polygon({{0.1, 0.1}, {0.9, 0.9}, {0.9, 0.1}, {0.1, 0.9}})});
-  const Mesh tie = bow.mesh(1e-2);
-  EXPECT_NEAR(plane_area(bow, tie), 0.32, 1e-5);
-  EXPECT_EQ(value_of(check(tie)).degenerate_triangles, 0u);
-  Face discs(plane(), {circle({1.5, 1.5}, 1), circle({2.5, 1.5}, 1)});
-  const Mesh rest = discs.mesh(1e-4);
-  const double shared = 2 * std::numbers::pi / 3 - std::sqrt(0.75);
-  EXPECT_NEAR(plane_area(discs, rest), 2 * std::numbers::pi - 2 * shared, 3e-3);
-  EXPECT_LE(discs.bound, 1e-4);
-}
-
-TEST(TrimmedFace, KeepsAnglesAndPixels) {
-  const std::vector<TrimLoop> loops{circle({1.9, 1.4}, 1.15, true)};
-  Face face(wavy(), loops);
-  for (const double angle : {0.5, 0.1}) {
-    const Tessellation plan = value_of(Tessellation::make(face.set, {.angle = angle}));
-    EXPECT_LE(plan.angle(), angle);
-    EXPECT_EQ(plan.patches_without_angle(), 0u);
-    Mesh mesh = value_of(plan.allocate());
-    ASSERT_TRUE(plan.run(face.set, mesh.views()).ok());
-    // The rim turns by no more than about the angle from one edge to the next: a circle of at least this many edges.
-    const MeshReport report = value_of(check(mesh));
-    EXPECT_GT(static_cast<double>(report.open_edges), 2 * std::numbers::pi / angle);
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-      const auto normal = [&](std::size_t c) {
-        const float* n = &mesh.normals[3 * std::size_t{mesh.indices[3 * t + c]}];
-        return Vec3{double(n[0]), double(n[1]), double(n[2])};
-      };
-      for (std::size_t c = 0; c < 3; ++c)
-        ASSERT_LE(length(normal(c) - normal((c + 1) % 3)), 2 * std::sin(angle / 2) + 1e-5);
-    }
-  }
-  const View view{.eye = {2, -8, 6}, .target = {2, 2, 0}, .width = 640, .height = 480};
-  for (const double pixels : {2.0, 0.3}) {
-    const Tessellation plan = value_of(Tessellation::make(face.set, {.pixels = PixelTolerance{pixels, view}}));
-    EXPECT_LE(plan.pixels(), pixels);
-    EXPECT_GT(plan.pixels(), 0.0);
-  }
-}
-
-TEST(TrimmedFace, KeepsBudgetsAndNamesItsParts) {
-  Face face(wavy(), {circle({1.9, 1.4}, 1.15, true)});
-  for (const std::uint64_t budget : {300, 3000}) {
-    const Tessellation plan = value_of(Tessellation::make(face.set, {.max_triangles = budget, .smallest = true}));
-    EXPECT_LE(plan.capacity().triangles, budget);
-    EXPECT_GT(plan.capacity().triangles, budget / 2);
-    EXPECT_LE(plan.bound(), plan.tolerance());
-  }
-  const Mesh mesh = face.mesh(1e-2);
-  const auto parts = value_of(parts_by_surface(mesh, face.set, face.model));
-  ASSERT_EQ(parts.size(), 1u);
-  EXPECT_EQ(parts[0].name, "face");
-}
-
-TEST(TrimmedFace, HasDoublePositionsAndJoinedNormals) {
-  Face face(wavy(), {circle({0.5, 0.5}, 0.3, true)});
-  const Mesh exact = face.mesh({.tolerance = 1e-4, .precision = Precision::double_precision});
-  ASSERT_EQ(exact.positions_f64.size(), exact.positions.size());
-  for (std::size_t k = 0; k < exact.positions.size(); ++k) {
-    const Vec3 origin = exact.origin;
-    const double shift = k % 3 == 0 ? origin.x : k % 3 == 1 ? origin.y : origin.z;
-    ASSERT_NEAR(exact.positions_f64[k], double(exact.positions[k]) + shift, 1e-6);
-  }
-  // Vertices at one place have one normal, as the surface is smooth.
-  const Mesh smooth = face.mesh({.tolerance = 1e-3, .crease_angle = 0.1});
-  std::map<std::array<float, 3>, std::array<float, 3>> normals;
-  for (std::size_t k = 0; k < smooth.vertex_count(); ++k) {
-    const auto triple = [&](const std::vector<float>& of) {
-      return std::array{of[3 * k], of[3 * k + 1], of[3 * k + 2]};
-    };
-    const auto [at, is_new] = normals.emplace(triple(smooth.positions), triple(smooth.normals));
-    ASSERT_TRUE(is_new || at->second == triple(smooth.normals)) << k;
-  }
-}
-
-TEST(TrimmedFace, IsTheSameForAnyNumberOfThreads) {
-  const std::vector<TrimLoop> loops{circle({1.9, 1.4}, 1.15, true), circle({3.3, 0.4}, 0.2, true)};
-  Face face(wavy(), loops);
-  const Mesh many = face.mesh(1e-3);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Mesh alone = Face(wavy(), loops).mesh(1e-3);
-  EXPECT_EQ(many.positions, alone.positions);
-  EXPECT_EQ(many.indices, alone.indices);
-}
-
-TEST(TrimmedFace, OfBadInputIsRefused) {
-  Face face(wavy(), {circle({1.9, 1.4}, 1.15, true)});
-  for (const double tolerance : {0.0, -1.0, std::nan(""), 1e-12})
-    EXPECT_EQ(Tessellation::make(face.set, {.tolerance = tolerance}).status().code(), StatusCode::invalid_argument);
-  EXPECT_EQ(Tessellation::make(face.set, {.rates = UniformRates{4, 4}}).status().code(), StatusCode::unsupported);
-  EXPECT_EQ(Tessellation::make(face.set, {.tolerance = 0.1, .share_vertices = true}).status().code(),
-            StatusCode::unsupported);
-  Tessellation plan = value_of(Tessellation::make(face.set, {.tolerance = 0.1}));
-  Mesh mesh = value_of(plan.allocate());
-  EXPECT_EQ(plan.update(face.set, PatchEdits{}, mesh.views()).status().code(), StatusCode::unsupported);
-  const PatchSet other = Face(wavy(), {circle({1.9, 1.4}, 1.14, true)}).set;
-  EXPECT_EQ(plan.run(other, mesh.views()).code(), StatusCode::stale);
-  // A hole as large as the domain leaves no patch.
-  Model empty = face.model;
-  empty.surfaces[0].trims = std::vector{circle({2, 1.5}, 50, true)};
-  EXPECT_EQ(make_patch_set(empty).status().code(), StatusCode::invalid_argument);
-}
-
-// A loop that cannot be used costs its own face alone.
-TEST(TrimmedFace, OfAnUnusableLoopIsWholeAndNamed) {
-  Face face(wavy(), {});
-  Model model{.name = {}, .surfaces = {face.model.surfaces[0], face.model.surfaces[0]}};
-  model.surfaces[0].trims = std::vector{circle({1, 1}, 0.5, true)};
-  model.surfaces[1].trims = std::vector{circle({1, 1}, 1e101, true)};
-  const PatchSet set = value_of(make_patch_set(model));
-  ASSERT_EQ(set.trim_faults().size(), 1u);
-  EXPECT_EQ(set.trim_faults()[0].index(), 1);
-  EXPECT_EQ(set.trim_faults()[0].message().rfind("surface 1 (face): loop 0 ", 0), 0u) << set.trim_faults()[0].message();
-  EXPECT_EQ(set.patch_count(), 24u);
 }
 
 }  // namespace

@@ -34,12 +34,11 @@ TEST_F(CadTool, RealPartsAreMeshedAndDrawn) {
     const json facts = json::parse(info.output);
     EXPECT_GE(facts["patches"], facts["surfaces"]);
     EXPECT_GT(facts["size"], 1.0);
-    expect_warnings(run({"tessellate", path, "-o", "a.ply", "--grid", "6x6"}), path);
+    expect_warnings(run({"tessellate", path, "-o", "a.ply"}), path);
     const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
     EXPECT_EQ(mesh["non_finite_vertices"], 0);
     const ToolRun picture = run({"raycast", path, "-o", "a.png", "--size", "64x48"});
     expect_warnings(picture, path);
-    EXPECT_EQ(facts["warnings"].empty(), picture.errors.empty());
     EXPECT_GT(content_of(folder_ / "a.png").size(), 500u);
   }
 }

@@ -13,6 +13,7 @@
 #include "memory.h"
 #include "output.h"
 #include "progress.h"
+#include "tessellate_footer.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
 
@@ -158,9 +159,9 @@ Status report(const Job& job, const Options& options, const CommonOptions& commo
     object["weld"] = options.certified.weld ? Json(*options.certified.weld) : Json();
     object["welded_borders"] = made.welded_borders;
     object["open_edges"] = made.open_edges;
+    object["cut_patches"] = set.cut_count();
+    object["crossed_surfaces"] = made.crossed.size();
   }
-  object["cut_patches"] = set.cut_count();
-  object["crossed_surfaces"] = made.crossed.size();
   add_model_facts(object, loaded, set);
   add_seconds(object, common, timings);
   return print_report(job.output, object.text() + "\n");
@@ -177,6 +178,8 @@ Status run_tessellate(const Job& job, const Options& options, const CommonOption
     const auto phase = timings.phase("evaluate");
     return tessellate(options, loaded->model, *set);
   }();
+  if (!made && options.grid && set->cut_count() > 0)
+    return in_file(job.inputs[0], {made.status().code(), made.status().message() + " (--untrimmed)"});
   if (!made) return in_file(job.inputs[0], made.status());
   for (const std::size_t surface : made->crossed)
     warn(loaded
@@ -199,22 +202,6 @@ std::string fault_of_output(const std::string& path) {
   if (path.empty()) return fault_of_name(path);
   return is_folder(path) || is_stream(path) ? "" : check_mesh_format(path).message();
 }
-
-constexpr const char* footer =
-    "The mesh has positions, normals and parameters (.stl: triangles only). .obj, .glb and .gltf have one part for "
-    "each\n"
-    "surface. Neighbours share their borders bit for bit. With --share-vertices they share vertices too; a shared\n"
-    "vertex has the parameters of the first of its patches. Several models become one mesh, or one mesh each if the\n"
-    "output is a folder (then as .ply) or contains {name}.\n"
-    "With --tolerance, --relative or --triangles each patch gets the rates that it needs, and neighbours meet without "
-    "a\n"
-    "crack. The printed bound is proven, and includes float rounding and fits. With --quads whole cells are faces of\n"
-    "four corners; strips along borders and cells at poles are triangles.\n"
-    "\nExamples:\n"
-    "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
-    "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001 --angle 10\n"
-    "  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40\n"
-    "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
 
 /// Adds the options for how fine the mesh is, and returns them. Without any, a relative tolerance is used.
 std::vector<const Option*> add_density(Command& command, Options& options) {
@@ -392,7 +379,7 @@ void add_tessellate(Command& tool, Session& session) {
   add_untrimmed(command, options->models);
   add_view(command, *options);
   add_common(command, session.common);
-  command.footer = footer;
+  command.footer = tessellate_footer;
   command.choose = [options, &session, density] {
     check_input(options->models);
     check_stream_format(options->output, options->format);

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/format/patch_net.h"
 #include "io/spline/model_formats.h"
+#include "io/spline/patch_net.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <string>
 
-#include "io/format/patch_net.h"
 #include "io/obj/obj_name.h"
 #include "io/spline/model_formats.h"
+#include "io/spline/patch_net.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

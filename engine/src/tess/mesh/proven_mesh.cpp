@@ -113,7 +113,6 @@ ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, 
       shapes_(planner.shapes().begin(), planner.shapes().end()),
       weld_(planner.weld()),
       welded_borders_(planner.weld().joined_by_distance),
-      trims_(impl_of(set).trims),
       origin_(set.origin()),
       revision_(set.revision()),
       is_certified_(set.fit_error().certified),
@@ -175,7 +174,7 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   if (Status status = check_views(out, capacity(), plan_.has_f64_positions()); !status.ok()) return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  if (impl_of(set).trims != trims_)
+  if (!plan_.has_trims_of(impl_of(set)))
     return {StatusCode::stale, "the plan was made for a set that other trimming loops cut"};
   const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };

@@ -72,7 +72,6 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   VertexCopies weld_;               ///< vertices with a common position
   VertexCopies joins_;              ///< vertices with a common normal, or stored once
   std::size_t welded_borders_;
-  std::shared_ptr<const PatchTrims> trims_;  ///< those of the set; null if no patch is cut
   Vec3 origin_;
   std::uint64_t revision_;  ///< the set's, of which the plan is proven
   bool is_certified_;

@@ -44,11 +44,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
   if (Status status = planner.find_edges_and_bounds(execution); !status.ok()) return status;
   for (const double rounding : planner.roundings_)
     planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
-  if (set.trims) {
-    planner.drawn_ = planner.shapes_;
-    for (const PatchTrims::Cut& cut : set.trims->cuts) planner.drawn_[cut.patch].is_curve = true;
-    for (const TrimRegion& region : set.trims->regions) planner.face_sides_.emplace_back(region);
-  }
+  planner.find_cut_faces();
   planner.find_weld();
   if (Status status = planner.bound_turning_and_picture(execution); !status.ok()) return status;
   return planner;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,8 +43,15 @@ class CertifiedPlan {
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
   std::span<const Division> divisions() const { return divisions_; }
   /// The patches that loops cut, by growing patch. Their divisions are empty but for the borders' segments.
-  std::span<const CutPatch> cuts() const { return cuts_; }
-  std::span<const std::uint32_t> crossed() const { return crossed_; }    ///< cut patches whose loops cross
+  std::span<const CutPatch> cuts() const { return trimmed_ ? trimmed_->cuts : std::span<const CutPatch>(); }
+  /// Cut patches without triangles, because their chords cross.
+  std::span<const std::uint32_t> crossed() const {
+    return trimmed_ ? trimmed_->crossed : std::span<const std::uint32_t>();
+  }
+  /// Whether a set has the loops that the plan was made for.
+  bool has_trims_of(const PatchSet::Impl& set) const {
+    return trimmed_ ? trimmed_->trims == set.trims : set.trims == nullptr;
+  }
   std::span<const PatchSegments> segments() const { return segments_; }  ///< segments that each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
   std::size_t first_triangle(std::size_t patch) const { return first_triangle_[patch]; }
@@ -91,8 +99,12 @@ class CertifiedPlan {
   /// `[patch]`, and the number of all at the end.
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<float> bounds_, angles_, pixels_;
-  std::vector<CutPatch> cuts_;
-  std::vector<std::uint32_t> crossed_;
+  struct Trimmed {
+    std::shared_ptr<const PatchTrims> trims;  ///< those of the set
+    std::vector<CutPatch> cuts;
+    std::vector<std::uint32_t> crossed;
+  };
+  std::unique_ptr<Trimmed> trimmed_;  ///< null if no patch is cut
   std::uint32_t open_edges_ = 0;
   bool is_f64_ = false, has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
@@ -224,6 +236,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
   bool is_cut(std::size_t patch) const { return set_->trims && set_->trims->is_cut[patch]; }
+  /// Finds the sides of faces that loops cut, and keeps their patches from being divided as whole ones.
+  void find_cut_faces();
   /// The room for the triangles of a cut patch, and for the slivers along its loops.
   struct CutRoom {
     double given = 0;  ///< the errors of its vertices and of the fit
@@ -231,6 +245,10 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     TrimmedPatch limits;
   };
   CutRoom room_of(const CutPatch& cut, const Request& request, const CertifiedPlan& plan) const;
+  /// Chooses the segments of the cut patches whose bounds exceed the limits: `excess` above 1. They may take `shares`
+  /// of the room.
+  Status choose_cut(const Request& request, std::span<const double> shares, std::span<const double> excess,
+                    CertifiedPlan& plan) const;
   /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds.
   Status divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.

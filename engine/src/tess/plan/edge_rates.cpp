@@ -115,6 +115,31 @@ class BorderSegments {
   std::vector<std::uint8_t> against_;    ///< `[border]`; empty if all segments are uniform
 };
 
+/// Makes the borders even that patches refuse, and returns the patches that accept odd ones, with their distances there.
+/// The borders are made even together: a refusal must not depend on an earlier one. Each raises rates, which lowers the
+/// distances of those that were accepted.
+template <class ForOddBorders>
+std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& borders, double tolerance,
+                                                             const ForOddBorders& for_odd_borders) {
+  std::vector<std::pair<std::size_t, Side>> refused;
+  std::vector<std::pair<std::size_t, float>> accepted;
+  const auto judge = [&](std::size_t k, Side side, double distance) {
+    if (!(distance <= tolerance)) {
+      refused.emplace_back(k, side);
+    } else {
+      accepted.emplace_back(k, rounded_up(distance));
+    }
+  };
+  for_odd_borders(judge);
+  if (refused.empty()) return accepted;
+  for (const auto& [k, side] : refused) borders.make_even(k, side);
+  refused.clear();
+  accepted.clear();
+  for_odd_borders(judge);
+  assert(refused.empty());
+  return accepted;
+}
+
 }  // namespace
 
 void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
@@ -132,8 +157,6 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
       borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k) && !is_cut(k)));
   if (!std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
     borders.part(borders_against());
-  // The borders that patches refuse are made even together: a refusal must not depend on an earlier one. Each raises
-  // rates, which lowers the distances of those that were accepted.
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
@@ -145,24 +168,8 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
       }
     }
   };
-  std::vector<std::pair<std::size_t, Side>> refused;
-  std::vector<std::pair<std::size_t, float>> accepted;
-  const auto judge = [&](std::size_t k, Side side, double distance) {
-    if (!(distance <= tolerance)) {
-      refused.emplace_back(k, side);
-    } else {
-      accepted.emplace_back(k, rounded_up(distance));
-    }
-  };
-  for_odd_borders(judge);
-  for (const auto& [k, side] : refused) borders.make_even(k, side);
-  if (!refused.empty()) {
-    refused.clear();
-    accepted.clear();
-    for_odd_borders(judge);
-    assert(refused.empty());
-  }
-  for (const auto& [k, distance] : accepted) plan.bounds_[k] = std::max(plan.bounds_[k], distance);
+  for (const auto& [k, distance] : make_refused_even(borders, tolerance, for_odd_borders))
+    plan.bounds_[k] = std::max(plan.bounds_[k], distance);
   plan.divisions_.reserve(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k)
     plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));

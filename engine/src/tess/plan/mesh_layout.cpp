@@ -11,7 +11,8 @@ void CertifiedPlan::lay_out() {
   const std::size_t patches = divisions_.size();
   for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
   std::size_t vertices = 0, triangles = 0, quads = 0;
-  auto cut = cuts_.begin();
+  const std::span<const CutPatch> cuts = this->cuts();
+  auto cut = cuts.begin();
   for (std::size_t patch = 0; patch < patches; ++patch) {
     const Division& division = divisions_[patch];
     first_vertex_[patch] = vertices;
@@ -20,7 +21,7 @@ void CertifiedPlan::lay_out() {
     if (!division.empty)
       vertices += division.inner_count() + (shares_vertices() ? owned_ring_count(patch) : division.ring_count());
     triangles += division.triangle_count();
-    if (cut != cuts_.end() && cut->patch == patch) {
+    if (cut != cuts.end() && cut->patch == patch) {
       vertices += cut->vertices.size();
       triangles += cut->triangles.size();
       ++cut;
@@ -42,7 +43,7 @@ void CertifiedPlan::count_open_edges_beside_loops(const SharedEdges& edges) {
     for (std::size_t patch = 0; patch < divisions_.size(); ++patch)
       for (const Side side : all_sides)
         if (!divisions_[patch].empty) visit_border(patch, side, visit);
-    for (const CutPatch& cut : cuts_)
+    for (const CutPatch& cut : cuts())
       for (const Side side : all_sides)
         if (!cut.is_crossed && cut.is_full[static_cast<std::size_t>(side)]) visit_border(cut.patch, side, visit);
   };
@@ -51,7 +52,7 @@ void CertifiedPlan::count_open_edges_beside_loops(const SharedEdges& edges) {
   for_borders([&](std::uint32_t edge, int rate) {
     if (borders[edge] == 1) open_edges_ += static_cast<std::uint32_t>(rate);
   });
-  for (const CutPatch& cut : cuts_) open_edges_ += cut.open_edges;
+  for (const CutPatch& cut : cuts()) open_edges_ += cut.open_edges;
 }
 
 void CertifiedPlan::share(const VertexCopies& copies) {

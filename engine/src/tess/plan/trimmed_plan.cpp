@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "parallel/parallel_for.h"
@@ -30,6 +31,13 @@ constexpr int max_attempts = 16;
 constexpr std::size_t cuts_per_task = 4;
 
 }  // namespace
+
+void CertifiedPlanner::find_cut_faces() {
+  if (!set_->trims) return;
+  drawn_ = shapes_;
+  for (const PatchTrims::Cut& cut : set_->trims->cuts) drawn_[cut.patch].is_curve = true;
+  for (const TrimRegion& region : set_->trims->regions) face_sides_.emplace_back(region);
+}
 
 CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const Request& request,
                                                     const CertifiedPlan& plan) const {
@@ -92,7 +100,7 @@ void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
     const std::uint32_t edge = edges_.edge(border / 4, all_sides[border % 4]);
     if (edge != SharedEdges::none && whole[edge] == CutPatch::none) whole[edge] = border;
   }
-  for (CutPatch& cut : plan.cuts_) {
+  for (CutPatch& cut : plan.trimmed_->cuts) {
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(cut.patch, side);
       if (edge == SharedEdges::none || whole[edge] == CutPatch::none) continue;
@@ -102,23 +110,32 @@ void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
   }
 }
 
+Status CertifiedPlanner::choose_cut(const Request& request, std::span<const double> shares,
+                                    std::span<const double> excess, CertifiedPlan& plan) const {
+  Request own = request;
+  own.uniform = true;  // triangles of the band may be as wide as the widest cell
+  own.fewest = false;
+  for (std::size_t c = 0; c < shares.size(); ++c) {
+    if (excess[c] <= 1) continue;
+    const std::size_t patch = plan.cuts()[c].patch;
+    own.share = shares[c];
+    const Choice choice = choose(patch, own, max_rate);
+    if (choice.failure != Failure::none) return refusal(choice.failure, patch, request);
+    plan.segments_[patch] = choice.segments;
+  }
+  return {};
+}
+
 Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
-  plan.cuts_.resize(cuts.size());
-  for (std::size_t c = 0; c < cuts.size(); ++c) plan.cuts_[c].patch = cuts[c].patch;
+  plan.trimmed_ = std::make_unique<CertifiedPlan::Trimmed>();
+  plan.trimmed_->trims = set_->trims;
+  plan.trimmed_->cuts.resize(cuts.size());
+  for (std::size_t c = 0; c < cuts.size(); ++c) plan.trimmed_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
   std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
-    for (std::size_t c = 0; c < cuts.size(); ++c) {
-      if (excess[c] <= 1) continue;
-      Request own = request;
-      own.share = shares[c];
-      own.uniform = true;  // triangles of the band may be as wide as the widest cell
-      own.fewest = false;
-      const Choice choice = choose(cuts[c].patch, own, max_rate);
-      if (choice.failure != Failure::none) return refusal(choice.failure, cuts[c].patch, request);
-      plan.segments_[cuts[c].patch] = choice.segments;
-    }
+    if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
     const std::vector<Division> before = std::move(plan.divisions_);
     plan.divisions_.clear();
     divide(request.tolerance, plan);
@@ -127,10 +144,10 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
       for (std::size_t c = begin; c < end; ++c) {
         const std::size_t k = cuts[c].patch;
         if (excess[c] <= 1 && before[k] == plan.divisions_[k]) continue;
-        const CutRoom room = room_of(plan.cuts_[c], request, plan);
+        const CutRoom room = room_of(plan.trimmed_->cuts[c], request, plan);
         maker.make(set_->trims->regions[cuts[c].region], face_sides_[cuts[c].region], cuts[c], room.limits,
-                   plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.cuts_[c]);
-        excess[c] = bound_cut(room, plan.cuts_[c], plan);
+                   plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.trimmed_->cuts[c]);
+        excess[c] = bound_cut(room, plan.trimmed_->cuts[c], plan);
       }
     };
     const Execution quiet{.cancel = execution.cancel};
@@ -138,14 +155,14 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     bool keeps = true;
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       if (excess[c] <= 1) continue;
-      if (!(plan.cuts_[c].sliver < request.tolerance)) return too_rough(request, cuts[c].patch);
+      if (!(plan.trimmed_->cuts[c].sliver < request.tolerance)) return too_rough(request, cuts[c].patch);
       keeps = false;
       shares[c] *= 0.85 / excess[c];
     }
     if (!keeps) continue;
     plan.count_open_edges_beside_loops(edges_);
-    for (const CutPatch& cut : plan.cuts_)
-      if (cut.is_crossed) plan.crossed_.push_back(cut.patch);
+    for (const CutPatch& cut : plan.cuts())
+      if (cut.is_crossed) plan.trimmed_->crossed.push_back(cut.patch);
     return {};
   }
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(excess) - excess.begin());

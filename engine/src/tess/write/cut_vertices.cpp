@@ -6,22 +6,12 @@
 #include "parallel/parallel_for.h"
 #include "tess/plan/ring_vertices.h"
 #include "tess/trimmed/patch_points.h"
+#include "tess/write/vertex_views.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 4;
-
-template <class T>
-void put_vector(const View3<T>& view, std::size_t at, const Vec3& p) {
-  view.at(at, 0) = static_cast<T>(p.x);
-  view.at(at, 1) = static_cast<T>(p.y);
-  view.at(at, 2) = static_cast<T>(p.z);
-}
-template <class T>
-void copy(const View3<T>& vectors, std::size_t from, std::size_t to) {
-  for (int c = 0; c < 3; ++c) vectors.at(to, c) = vectors.at(from, c);
-}
 
 class CutWriter {
  public:
@@ -74,8 +64,7 @@ class CutWriter {
     };
     bool is_smooth = !out_.normal.empty() && apart_ > 0;
     for_vertices([&](std::size_t to, std::size_t from) {
-      if (!out_.position.empty()) copy(out_.position, from, to);
-      if (!out_.position_f64.empty()) copy(out_.position_f64, from, to);
+      copy_positions(out_, from, to);
       is_smooth = is_smooth && length(normal(to) - normal(from)) <= apart_;
     });
     if (is_smooth) for_vertices([&](std::size_t to, std::size_t from) { copy(out_.normal, from, to); });

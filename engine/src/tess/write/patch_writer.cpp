@@ -7,6 +7,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tess/cells/f64_points.h"
 #include "tess/write/vertex_job.h"
+#include "tess/write/vertex_views.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -16,13 +17,6 @@ std::array<float, 3> start_of(const BezierPatch& net, const Vec3& origin, Side s
   const bool end_u = side == Side::u1 || side == Side::v1, end_v = side == Side::v1 || side == Side::u0;
   const Vec3 p = net.point(end_u ? net.degree_u() : 0, end_v ? net.degree_v() : 0) - origin + Vec3{};
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-
-template <class T>
-void put_vector(const View3<T>& view, std::size_t at, const Vec3& p) {
-  view.at(at, 0) = static_cast<T>(p.x);
-  view.at(at, 1) = static_cast<T>(p.y);
-  view.at(at, 2) = static_cast<T>(p.z);
 }
 
 /// Kernels write indices past the caches as if they were floats.

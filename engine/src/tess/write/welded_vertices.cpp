@@ -5,20 +5,12 @@
 #include "parallel/parallel_for.h"
 #include "tess/edges/side_curve.h"
 #include "tess/plan/ring_vertices.h"
+#include "tess/write/vertex_views.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t copies_per_piece = 64;
-
-template <class T>
-void copy(const View3<T>& vectors, std::size_t from, std::size_t to) {
-  for (int c = 0; c < 3; ++c) vectors.at(to, c) = vectors.at(from, c);
-}
-void copy_positions(const MeshViews& out, std::size_t from, std::size_t to) {
-  if (!out.position.empty()) copy(out.position, from, to);
-  if (!out.position_f64.empty()) copy(out.position_f64, from, to);
-}
 
 /// Calls visit(vertex, vertex that it is copied from) for the points inside a border.
 template <class Visit>
