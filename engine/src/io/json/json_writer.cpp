@@ -36,16 +36,7 @@ class JsonModelWriter {
 
   /// Returns false if the surface has trims that are left out.
   bool write_patches(const WrittenSurface& surface) {
-    if (PatchNet(surface).holds_all()) {
-      write_surface(surface);
-      return true;
-    }
-    for (std::size_t k = 0; k < surface.patches.size() && !out_.failed(); ++k) {
-      const Domain domain = surface.patch_domain(k);
-      const std::array breaks_u{domain.u0, domain.u1}, breaks_v{domain.v0, domain.v1};
-      write_surface({surface.name, breaks_u, breaks_v, surface.patches.subspan(k, 1), {}});
-    }
-    return surface.trims.empty();
+    return write_as_nets(surface, out_, [this](const WrittenSurface& net) { write_surface(net); });
   }
 
  private:

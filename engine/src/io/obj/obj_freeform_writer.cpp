@@ -2,7 +2,6 @@
 // with their trims. A surface is one `surf` of all its patches if these share their borders, which keeps its
 // parameters; otherwise one `surf` per patch.
 
-#include <array>
 #include <string>
 
 #include "io/obj/obj_name.h"
@@ -19,16 +18,7 @@ class ObjSurfaceWriter {
   /// Returns false if the surface has trims that are left out.
   bool write(const WrittenSurface& surface) {
     write_group(surface.name);
-    if (PatchNet(surface).holds_all()) {
-      write_surface(surface);
-      return true;
-    }
-    for (std::size_t k = 0; k < surface.patches.size() && !out_.failed(); ++k) {
-      const Domain domain = surface.patch_domain(k);
-      const std::array breaks_u{domain.u0, domain.u1}, breaks_v{domain.v0, domain.v1};
-      write_surface({surface.name, breaks_u, breaks_v, surface.patches.subspan(k, 1), {}});
-    }
-    return surface.trims.empty();
+    return write_as_nets(surface, out_, [this](const WrittenSurface& net) { write_surface(net); });
   }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 // The patches of a surface as one net of control points, for formats that hold splines.
 
+#include <array>
 #include <cstddef>
 
 #include "io/spline/model_formats.h"
@@ -62,5 +63,21 @@ class PatchNet {
   const WrittenSurface& surface_;
   std::size_t degree_u_, degree_v_, pieces_u_, pieces_v_;
 };
+
+/// Calls write(WrittenSurface) for the surface if its patches make a net, else for one patch after the other, without
+/// trims. Returns false if the surface has trims that are left out.
+template <class Write>
+bool write_as_nets(const WrittenSurface& surface, const OutputFile& out, Write write) {
+  if (PatchNet(surface).holds_all()) {
+    write(surface);
+    return true;
+  }
+  for (std::size_t k = 0; k < surface.patches.size() && !out.failed(); ++k) {
+    const Domain domain = surface.patch_domain(k);
+    const std::array breaks_u{domain.u0, domain.u1}, breaks_v{domain.v0, domain.v1};
+    write(WrittenSurface{surface.name, breaks_u, breaks_v, surface.patches.subspan(k, 1), {}});
+  }
+  return surface.trims.empty();
+}
 
 }  // namespace tessera::inline abi_0_1
