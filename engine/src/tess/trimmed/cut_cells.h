@@ -33,8 +33,6 @@ class CutCells {
 
   /// The grid vertices in use, as grid.vertex() counts them. Vertex k has the index `points` + k.
   std::span<const std::uint32_t> grid_vertices() const { return vertices_; }
-  /// The index of each grid vertex, no_place if it is not used.
-  std::span<const std::uint32_t> corners() const { return corners_; }
   std::span<const CellUse> uses() const { return uses_; }  ///< by cell
   /// Triangles of the band.
   std::span<const Triangle> band() { return triangles_.triangles(); }

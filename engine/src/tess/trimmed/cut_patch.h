@@ -34,9 +34,10 @@ struct CutPatch {
   std::vector<ParameterPoint> vertices;  ///< in the patch's own parameters; those of its grid come first, line by line
   std::vector<Triangle> triangles;       ///< counter-clockwise in the parameters
   std::vector<BorderVertex> on_borders;
-  std::array<bool, 4> is_full{};    ///< by Side: the loops keep all of it, and none ends on it
-  std::array<SameBorder, 4> same;   ///< by Side
-  std::uint32_t open_edges = 0;     ///< edges along loops, and on parts of sides that no neighbour has
+  std::array<bool, 4> is_full{};   ///< by Side: the loops keep all of it, and none ends on it
+  std::array<SameBorder, 4> same;  ///< by Side
+  /// Edges along loops, and on parts of sides that no neighbour has; where loops cross, before they are divided.
+  std::uint32_t open_edges = 0;
   double distance = 0, sliver = 0;  ///< the largest distance of a triangle, and of a sliver between chords and curves
   Rates widest;                     ///< odd rates at which cells are no smaller than the box of any triangle
 };
@@ -51,7 +52,7 @@ struct FaceSides {
 class CutPatchMaker {
  public:
   /// Cuts a patch. `cut`: the patch, of this region. `limits.domain` is set here. `borders`: the segments of its sides.
-  /// `out.patch`, `is_full` and `same` are the caller's, the rest is written.
+  /// `out.patch` and `out.same` are the caller's, the rest is written.
   ///
   /// Where chords cross, they are made finer, to a 64th; if they still cross then, they are divided where they do.
   void make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut, TrimmedPatch limits,

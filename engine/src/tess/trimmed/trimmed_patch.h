@@ -42,12 +42,10 @@ class PatchCutter {
   /// Divides chords where they cross, and triangulates the polygon. Returns false if some still cross.
   bool cut_crossing();
 
-  const CutCells& cells() const { return cells_; }
   CutCells& cells() { return cells_; }
   /// The parameters of a vertex, in the surface and in the patch.
   ParameterPoint point(std::uint32_t vertex) const;
   ParameterPoint local(std::uint32_t vertex) const;
-  const GridLines& grid() const { return grid_; }
   std::size_t vertex_count() const { return points_.size() + cells_.grid_vertices().size(); }
   /// The vertices up to this one are points of loops and sides, the others those of the grid.
   std::size_t loop_vertex_count() const { return points_.size(); }
