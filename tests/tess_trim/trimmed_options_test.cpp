@@ -4,6 +4,7 @@
 
 #include <map>
 #include <numbers>
+#include <string>
 
 #include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
@@ -114,6 +115,22 @@ TEST(TrimmedFace, OfBadInputIsRefused) {
   Model empty = face.model;
   empty.surfaces[0].trims = std::vector{circle({2, 1.5}, 50, true)};
   EXPECT_EQ(make_patch_set(empty).status().code(), StatusCode::invalid_argument);
+}
+
+// The tolerance that the message calls enough has a plan.
+TEST(TrimmedFace, OfATooSmallToleranceNamesOneThatIsEnough) {
+  Face face(plane(), {circle({1, 1}, 0.7, true)});
+  const Status refused = Tessellation::make(face.set, {.tolerance = 1e-12}).status();
+  ASSERT_EQ(refused.code(), StatusCode::invalid_argument);
+  const std::string& said = refused.message();
+  const std::size_t begin = said.rfind("; "), end = said.rfind(" is enough");
+  ASSERT_LT(begin, end) << said;
+  ASSERT_NE(end, std::string::npos) << said;
+  const double enough = std::stod(said.substr(begin + 2));
+  EXPECT_LT(enough, 1e-4) << said;
+  const Result<Tessellation> plan = Tessellation::make(face.set, {.tolerance = enough});
+  ASSERT_TRUE(plan.ok()) << said << "\n" << plan.status().message();
+  EXPECT_LE(plan->bound(), enough);
 }
 
 // A loop that cannot be used costs its own face alone.
