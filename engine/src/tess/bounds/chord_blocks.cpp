@@ -43,6 +43,7 @@ double pairs_of_products(const BlockGroup& group) {
 
 ChordBlocks::ChordBlocks(const PatchSet::Impl& set, bool by_doubles)
     : by_doubles_(by_doubles),
+      kernels_(&kernel::default_kernels()),
       pieces_(set.lane_counts.size() * block_pieces),
       unit_(set.lane_counts.size() * lanes, 1.0f),
       size_(unit_.size(), -1.0f),
@@ -57,7 +58,7 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
   const BlockGroup& group = set.group_of_block(block);
   float* const pieces = pieces_.data() + block * block_pieces;
   const bool in_block = !by_doubles_ && is_bounded_in_blocks(group);
-  const kernel::KernelTable& kernels = kernel::default_kernels();
+  const kernel::KernelTable& kernels = *kernels_;
   alignas(cache_line) Lanes<float> hints;
   hints.fill(kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain);
   if (in_block)
@@ -69,8 +70,10 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
          .unit = unit_.data() + block * lanes,
          .size = size_.data() + block * lanes,
          .hints = hints.data()});
+  bool is_hinted = false;
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     if (!in_block && !(wanted >> lane & 1u)) continue;
+    is_hinted |= hints[lane] != 0;
     float& size = size_[block * lanes + lane];
     const bool is_packed = in_block && size >= 0 && size < largest_size;
     source_[block * lanes + lane] = is_packed ? Source::packed : Source::alone;
@@ -78,8 +81,9 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
     if (is_packed) continue;
     size = -1;
     hints[lane] = kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain;
+    is_hinted = true;
   }
-  bound_exactly(set, block, hints, in_block ? ~0u : wanted);
+  if (is_hinted) bound_exactly(set, block, hints, in_block ? ~0u : wanted);
 }
 
 SecondDerivatives ChordBlocks::piece(std::size_t block, std::size_t lane, std::size_t which,
@@ -119,7 +123,7 @@ void ChordBlocks::Products::find(const ChordBlocks& chords, const PatchSet::Impl
   const float* const unit = chords.unit_.data() + block * lanes;
   values_.fill(std::numeric_limits<float>::infinity());
   if (pairs_of_products(group) == 0) return;
-  const kernel::KernelTable& kernels = kernel::default_kernels();
+  const kernel::KernelTable& kernels = *chords.kernels_;
   (group.rational ? kernels.bound_rational_products : kernels.bound_products)(
       {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
        .degree_u = group.degree_u,
@@ -157,13 +161,13 @@ ChordBlocks::Choice ChordBlocks::search(std::size_t block, std::size_t count, co
   Lanes<std::int32_t> rate_u, rate_v;
   for (std::size_t lane = 0; lane < lanes; ++lane)
     wanted[lane] = rounded_down(std::clamp(distance[lane] / double(unit_[block * lanes + lane]), 0.0, 0x1p60));
-  kernel::default_kernels().find_rates({.pieces = pieces_.data() + block * block_pieces,
-                                        .distance = wanted.data(),
-                                        .max_rate = most,
-                                        .rate_u = rate_u.data(),
-                                        .rate_v = rate_v.data(),
-                                        .chord = chord.data(),
-                                        .products = products ? products->values() : nullptr});
+  kernels_->find_rates({.pieces = pieces_.data() + block * block_pieces,
+                        .distance = wanted.data(),
+                        .max_rate = most,
+                        .rate_u = rate_u.data(),
+                        .rate_v = rate_v.data(),
+                        .chord = chord.data(),
+                        .products = products ? products->values() : nullptr});
   Choice choice;
   for (std::size_t lane = 0; lane < count; ++lane) {
     choice.rates[lane] = {rate_u[lane], rate_v[lane]};
@@ -184,7 +188,7 @@ std::uint32_t ChordBlocks::gaining_by_products(const PatchSet::Impl& set, std::s
   // For rational patches this would take as long as the products themselves: about a tenth is saved.
   share.fill(0.9f);
   if (!group.rational)
-    kernel::default_kernels().share_of_products(
+    kernels_->share_of_products(
         {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
          .degree_u = group.degree_u,
          .degree_v = group.degree_v,

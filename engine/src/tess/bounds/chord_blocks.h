@@ -111,6 +111,7 @@ class ChordBlocks {
   static constexpr std::size_t lanes = PatchSet::lanes, piece_count = 9, block_pieces = piece_count * 3 * lanes;
 
   bool by_doubles_;
+  const kernel::KernelTable* kernels_;
   UnsetVector<float> pieces_;   ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_
   AlignedVector<float> unit_;   ///< `[block][lane]`, powers of two
   AlignedVector<float> size_;   ///< `[block][lane]`, negative where unknown

@@ -34,7 +34,7 @@ class Segments {
   /// Places in `weights`, one for each eighth.
   using Grades = std::array<std::uint8_t, parts>;
   /// The largest number of graded segments.
-  static constexpr int max_graded = 2047;
+  static constexpr int max_graded = 1023;
 
   constexpr Segments() = default;  ///< none
   constexpr Segments(int all) : word_(static_cast<std::uint64_t>(all)) { assert(all >= 0 && all <= max_rate); }
@@ -54,9 +54,9 @@ class Segments {
     if (lower == 0 && are_equal(0, parts)) return all;
     if (lower != 0 && are_equal(0, 4) && are_equal(4, parts)) return halves(lower, all - lower);
     Segments result;
-    result.word_ = graded_bit | static_cast<std::uint64_t>(lower) << graded_bits | static_cast<std::uint64_t>(all);
+    result.word_ = graded_bit | static_cast<std::uint64_t>(lower) << rate_bits | static_cast<std::uint64_t>(all);
     for (std::size_t e = 0; e < parts; ++e)
-      result.word_ |= static_cast<std::uint64_t>(grades[e]) << (2 * graded_bits + grade_bits * e);
+      result.word_ |= static_cast<std::uint64_t>(grades[e]) << (rate_bits + lower_bits + grade_bits * e);
     return result;
   }
   friend constexpr bool operator==(Segments, Segments) = default;
@@ -64,9 +64,7 @@ class Segments {
   constexpr bool is_uniform() const { return word_ >> rate_bits == 0; }
   constexpr bool is_graded() const { return word_ >> 63 != 0; }
   /// The number of segments.
-  constexpr int rate() const {
-    return static_cast<int>(word_ & ((std::uint64_t{1} << (is_graded() ? graded_bits : rate_bits)) - 1));
-  }
+  constexpr int rate() const { return static_cast<int>(word_ & ((1u << rate_bits) - 1)); }
   /// Returns a number that differs for different segments; below 2^13 if they are uniform.
   constexpr std::uint64_t key() const { return word_; }
   /// Whether 1/2 lies inside no segment; graded segments have a point there only if the halves have numbers of their
@@ -77,13 +75,13 @@ class Segments {
   /// The number of segments in the lower half, if parts_halves().
   constexpr int in_lower_half() const {
     return is_uniform()  ? rate() / 2
-           : is_graded() ? static_cast<int>(word_ >> graded_bits & ((1u << graded_bits) - 1))
+           : is_graded() ? static_cast<int>(word_ >> rate_bits & ((1u << lower_bits) - 1))
                          : static_cast<int>(word_ >> rate_bits);
   }
   /// The weight of an eighth; 1 if the segments are not graded.
   constexpr int weight(int eighth) const {
     if (!is_graded()) return 1;
-    return weights[word_ >> (2 * graded_bits + grade_bits * eighth) & (weight_count - 1)];
+    return weights[word_ >> (rate_bits + lower_bits + grade_bits * eighth) & (weight_count - 1)];
   }
 
   struct Fraction {
@@ -110,7 +108,7 @@ class Segments {
     if (!is_graded()) return halves(rate() - in_lower_half(), in_lower_half());
     Grades grades{};
     for (std::size_t e = 0; e < parts; ++e)
-      grades[parts - 1 - e] = static_cast<std::uint8_t>(word_ >> (2 * graded_bits + grade_bits * e) & 31);
+      grades[parts - 1 - e] = static_cast<std::uint8_t>(word_ >> (rate_bits + lower_bits + grade_bits * e) & 31);
     return graded(rate(), has_lower() ? rate() - in_lower_half() : 0, grades);
   }
 
@@ -130,8 +128,8 @@ class Segments {
   }
 
  private:
-  static constexpr int rate_bits = 13;  // up to max_rate
-  static constexpr int graded_bits = 11, grade_bits = 5;
+  static constexpr int rate_bits = 13;                   // up to max_rate
+  static constexpr int lower_bits = 10, grade_bits = 5;  // of graded segments
   static constexpr std::uint64_t graded_bit = std::uint64_t{1} << 63;
 
   /// Eighths over which segments have the same integral, and their number.

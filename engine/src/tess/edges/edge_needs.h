@@ -24,7 +24,7 @@ struct EdgeNeeds {
   void add(Segments along, std::uint16_t never) {
     most = std::max(most, static_cast<std::uint16_t>(along.rate()));
     is_even = static_cast<std::uint8_t>(is_even | (never & along.parts_halves()));
-    patches = static_cast<std::uint8_t>(std::min(patches + 1, 2));
+    patches = static_cast<std::uint8_t>(1 + (patches != 0));
   }
   Segments segments() const { return most + (most & is_even); }
 };
@@ -59,7 +59,7 @@ class PieceNeeds {
   }
 
  private:
-  /// A fraction in one word: numerators are at most 8 x 77 x 2047 and denominators 8 x 77.
+  /// A fraction in one word: numerators are at most 8 x 77 x 1023 and denominators 8 x 77.
   struct Need {
     std::uint32_t numerator : 21 = 0, denominator : 11 = 1;
   };

@@ -191,9 +191,12 @@ float PackedBorder::weight_scale() const {
   return std::bit_cast<float>((253u - (std::bit_cast<std::uint32_t>(heaviest) >> 23)) << 23);
 }
 
+BorderHashes::BorderHashes(const PatchSet::Impl& set)
+    : kernels_(&kernel::default_kernels()), hashes_(set.lane_counts.size() * 4 * PatchSet::lanes) {}
+
 void BorderHashes::find(const PatchSet::Impl& set, std::size_t block) {
   const BlockGroup& group = set.group_of_block(block);
-  kernel::default_kernels().hash_borders(
+  kernels_->hash_borders(
       {.net = set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values,
        .degree_u = group.degree_u,
        .degree_v = group.degree_v,

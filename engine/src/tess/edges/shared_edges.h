@@ -67,7 +67,7 @@ bool equal(const PackedBorder& a, const PackedBorder& b, bool reversed);
 class BorderHashes {
  public:
   /// The set must have float Bernstein blocks.
-  explicit BorderHashes(const PatchSet::Impl& set) : hashes_(set.lane_counts.size() * 4 * PatchSet::lanes) {}
+  explicit BorderHashes(const PatchSet::Impl& set);
   /// Finds the hashes of a block. Threads: any number, each with its own block.
   void find(const PatchSet::Impl& set, std::size_t block);
 
@@ -78,6 +78,7 @@ class BorderHashes {
   }
 
  private:
+  const kernel::KernelTable* kernels_;
   UnsetVector<std::uint32_t> hashes_;
 };
 
@@ -96,6 +97,7 @@ class SharedEdges {
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
+  std::span<const std::uint32_t> of_borders() const { return edges_; }  ///< by 4 * patch + side
   /// Gives each edge a new number, below count(), or none.
   void renumber(std::span<const std::uint32_t> numbers);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "tess/edges/side_curve.h"
@@ -38,6 +39,40 @@ struct EdgePlace {
   double along;
 };
 
+using Lanes = std::array<float, PatchSet::lanes>;
+
+/// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed corners'
+/// difference. Loops over lanes are plain enough to be vectorized.
+float shortest_side(const PatchSet::Impl& set, std::size_t block) {
+  const BlockGroup& group = set.group_of_block(block);
+  const float* const net =
+      set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
+  const std::ptrdiff_t end_u = BorderPlaces(group, Side::u1).first, end_v = BorderPlaces(group, Side::v1).first;
+  const std::array<std::ptrdiff_t, 4> places = {0, end_u, end_u + end_v, end_v};
+  std::array<std::array<Lanes, 3>, 4> corners;
+  for (std::size_t corner = 0; corner < 4; ++corner)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float *const from = net + places[corner], *const values = from + c * PatchSet::lanes;
+      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) corners[corner][c][lane] = values[lane];
+      if (!group.rational) continue;
+      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
+        corners[corner][c][lane] /= from[3 * PatchSet::lanes + lane];
+    }
+  Lanes shortest;
+  shortest.fill(std::numeric_limits<float>::infinity());
+  for (std::size_t side = 0; side < 4; ++side) {
+    Lanes length{};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
+        const float way = std::abs(corners[side][c][lane] - corners[(side + 1) % 4][c][lane]);
+        length[lane] = way > length[lane] ? way : length[lane];
+      }
+    for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
+      shortest[lane] = length[lane] < shortest[lane] ? length[lane] : shortest[lane];
+  }
+  return *std::min_element(shortest.begin(), shortest.end());
+}
+
 class Welder {
  public:
   Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, const WeldRules& rules, SharedEdges& edges)
@@ -45,23 +80,22 @@ class Welder {
         shapes_(shapes),
         rules_(rules),
         edges_(edges),
-        joined_(edges.count()),
         leading_(edges.count(), none),
-        givers_(edges.count()),
-        borders_of_(edges.count(), 0),
-        is_pole_(edges.count(), 0) {
-    std::iota(givers_.begin(), givers_.end(), std::uint32_t{0});
-    for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (leading_[edge] == none) leading_[edge] = border;
-      ++borders_of_[edge];
+        has_more_(edges.count(), 0) {
+    std::uint32_t* const leading = leading_.data();
+    std::uint8_t* const has_more = has_more_.data();
+    for_borders([=](std::uint32_t border, std::uint32_t edge) {
+      has_more[edge] = leading[edge] != none;
+      leading[edge] = std::min(leading[edge], border);
     });
   }
 
   Weld run(std::span<const double> roundings) {
     const bool joins = rules_.reach > 0 && join_edges();
     if (joins) choose_givers();
-    const bool makes_points = rules_.reach > 0 && find_poles();
+    const bool makes_points = rules_.reach > 0 && find_poles(roundings);
     if (!joins && !makes_points && !rules_.every_edge) return {};
+    if (!makes_points) is_pole_.assign(leading_.size(), 0);
     find_shapes();
     UnionFind corners(4 * set_.patches.size());
     join_corners(corners);
@@ -80,10 +114,10 @@ class Welder {
   /// Calls visit(border, edge) for borders of patches with an area.
   template <class Visit>
   void for_borders(Visit visit) const {
-    for (std::size_t patch = 0; patch < set_.patches.size(); ++patch)
+    const std::uint32_t* edges = edges_.of_borders().data();
+    for (std::uint32_t patch = 0; patch < shapes_.size(); ++patch, edges += 4)
       for (std::uint32_t side = 0; side < 4 && !shapes_[patch].is_curve; ++side)
-        if (const std::uint32_t edge = edges_.edge(patch, all_sides[side]); edge != none)
-          visit(static_cast<std::uint32_t>(4 * patch) + side, edge);
+        if (edges[side] != none) visit(4 * patch + side, edges[side]);
   }
 
   /// The nearest edge to one with a single border.
@@ -130,7 +164,7 @@ class Welder {
   std::vector<EdgePlace> places() const {
     std::vector<EdgePlace> places;
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
-      if (leading_[edge] == none || (borders_of_[edge] > 1 && rules_.is_relative)) continue;
+      if (leading_[edge] == none || (has_more_[edge] && rules_.is_relative)) continue;
       const auto [first, last] = ends_of(leading_[edge]);
       const BezierPatch& patch = set_.patches[patch_of(first)];
       places.emplace_back(edge,
@@ -144,9 +178,8 @@ class Welder {
   bool join_edges() {
     const std::vector<EdgePlace> places = this->places();
     const double reach = 1.001 * rules_.reach;  // compare() decides
-    bool any = false;
     for (std::size_t k = 0; k < places.size(); ++k) {
-      if (borders_of_[places[k].edge] != 1) continue;
+      if (has_more_[places[k].edge]) continue;
       Nearest nearest{places[k].edge};
       const auto look = [&](const EdgePlace& other) {
         if (!(std::abs(other.along - places[k].along) <= reach)) return false;
@@ -158,27 +191,29 @@ class Welder {
       for (std::size_t n = k; n > 0 && look(places[n - 1]); --n) {
       }
       if (nearest.other == none) continue;
-      joined_.unite(nearest.edge, nearest.other, nearest.reversed);
-      any = true;
+      if (!joined_) joined_.emplace(leading_.size());
+      joined_->unite(nearest.edge, nearest.other, nearest.reversed);
     }
-    return any;
+    return joined_.has_value();
   }
 
   /// Finds the edge of each joined set whose leading border gives its points to all others.
   void choose_givers() {
+    givers_.resize(leading_.size());
+    std::iota(givers_.begin(), givers_.end(), std::uint32_t{0});
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
-      std::uint32_t& giver = givers_[joined_.find(edge).member];
+      std::uint32_t& giver = givers_[joined_->find(edge).member];
       if (giver != edge && leading_[edge] != none && comes_before(curve(leading_[edge]), curve(leading_[giver])))
         giver = edge;
     }
   }
 
   /// Returns the edge whose leading border gives its points to all edges joined to it.
-  std::uint32_t canonical(std::uint32_t edge) { return givers_[joined_.find(edge).member]; }
+  std::uint32_t canonical(std::uint32_t edge) { return joined_ ? givers_[joined_->find(edge).member] : edge; }
   /// Whether a border runs against the leading border of its canonical edge.
   bool runs_against(std::uint32_t border, std::uint32_t edge) {
     const bool turned = tessera::runs_against(set_, border, leading_[edge]);
-    return turned != (joined_.find(edge).turned != joined_.find(canonical(edge)).turned);
+    return joined_ ? turned != (joined_->find(edge).turned != joined_->find(canonical(edge)).turned) : turned;
   }
 
   /// Whether a border becomes a point.
@@ -195,14 +230,21 @@ class Welder {
     return curve(border).box().diagonal() <= most;
   }
   /// Finds the edges that become points. Returns whether there are any.
-  bool find_poles() {
-    bool any = false;
-    for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (!is_point(border)) return;
-      is_pole_[canonical(edge)] = 1;
-      any = true;
-    });
-    return any;
+  bool find_poles(std::span<const double> roundings) {
+    const double rounding = *std::max_element(roundings.begin(), roundings.end());
+    for (std::size_t block = 0; block < set_.lane_counts.size(); ++block) {
+      if (!(shortest_side(set_, block) <= rules_.reach + 2 * rounding)) continue;
+      const std::uint32_t* const patches = set_.lane_patches.data() + block * PatchSet::lanes;
+      for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
+        for (std::uint32_t side = 0; side < 4; ++side) find_pole(4 * patches[lane] + side);
+    }
+    return !is_pole_.empty();
+  }
+  void find_pole(std::uint32_t border) {
+    const std::uint32_t edge = edge_of_border(border);
+    if (edge == none || shapes_[patch_of(border)].is_curve || !is_point(border)) return;
+    is_pole_.resize(leading_.size(), 0);
+    is_pole_[canonical(edge)] = 1;
   }
   void find_shapes() {
     weld_.shapes.assign(shapes_.begin(), shapes_.end());
@@ -279,11 +321,11 @@ class Welder {
   std::span<const PatchShape> shapes_;  ///< before welding
   WeldRules rules_;
   SharedEdges& edges_;
-  UnionFind joined_;                    ///< sets of joined edges
   std::vector<std::uint32_t> leading_;  ///< `[edge]`: its leading border, the first one of a patch with an area
+  std::vector<std::uint8_t> has_more_;  ///< `[edge]`: whether it has more than one border of patches with an area
+  std::optional<UnionFind> joined_;     ///< sets of joined edges, if any are
   std::vector<std::uint32_t> givers_;   ///< `[edge]`: for the member that stands for a joined set, its canonical edge
-  std::vector<std::uint32_t> borders_of_;  ///< `[edge]`: the number of its borders of patches with an area
-  std::vector<std::uint8_t> is_pole_;      ///< `[canonical edge]`
+  std::vector<std::uint8_t> is_pole_;   ///< `[canonical edge]`
   Weld weld_;
 };
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/impl_access.h"
 #include "base/text.h"
 #include "tess/mesh/proven_mesh.h"
 #include "tessera/status.h"
@@ -14,6 +15,16 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double max_weld = 0.05;  // a share of the model's size
+
+/// Returns a weld, or the largest one of a set if that is less. Looks at no more patches than it takes to tell.
+double at_most_max_weld(double weld, const PatchSet& set) {
+  Box3 box;
+  for (const BezierPatch& patch : impl_of(set).patches) {
+    box.extend(patch.hull_box());
+    if (max_weld * box.diagonal() >= weld) return weld;
+  }
+  return max_weld * box.diagonal();
+}
 
 }  // namespace
 
@@ -33,19 +44,22 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
                std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
-  const double weld = options.weld.value_or(0), size = set.box().diagonal();
+  const double weld = options.weld.value_or(0);
   if (!(weld >= 0 && std::isfinite(weld)))
     return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
-  if (weld > max_weld * size && weld > 0)
-    return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " + text(size));
+  if (weld > 0 && weld > at_most_max_weld(weld, set))
+    return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " +
+               text(set.box().diagonal()));
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
     return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
   PlannerOptions planner;
   if (options.weld) {
     planner.weld.reach = weld;
+  } else if (options.tolerance && !options.relative) {
+    planner.weld = {at_most_max_weld(*options.tolerance / 8, set), true};
   } else {
-    const double tolerance = options.tolerance.value_or(0) * (options.relative ? size : 1);
-    planner.weld = {options.tolerance ? std::min(tolerance / 8, max_weld * size) : 1e-6 * size, true};
+    const double size = set.box().diagonal();
+    planner.weld = {options.tolerance ? std::min(*options.tolerance * size / 8, max_weld * size) : 1e-6 * size, true};
   }
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;

@@ -93,6 +93,13 @@ class BorderSegments {
 
   /// Returns the segments of a patch's four borders.
   std::array<Segments, 4> of(std::size_t patch) const {
+    if (pieces_.empty()) {
+      const auto segments = [&](Side side) {
+        const std::uint32_t edge = edges_.edge(patch, side);
+        return edge == SharedEdges::none ? along(segments_[patch], side) : needs_[edge].segments();
+      };
+      return {segments(Side::v0), segments(Side::u1), segments(Side::v1), segments(Side::u0)};
+    }
     return {border(patch, Side::v0), border(patch, Side::u1), border(patch, Side::v1), border(patch, Side::u0)};
   }
 
@@ -101,7 +108,7 @@ class BorderSegments {
   Segments border(std::size_t patch, Side side) const {
     const std::uint32_t edge = edges_.edge(patch, side);
     if (edge == SharedEdges::none) return along(segments_[patch], side);
-    return of_edge(edge, !pieces_.empty() && is_against(patch, side));
+    return of_edge(edge, is_against(patch, side));
   }
   Segments of_edge(std::uint32_t edge, bool against) const {
     return pieces_.empty() ? needs_[edge].segments() : pieces_[edge].segments(against, needs_[edge].is_even);
@@ -150,13 +157,18 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   const auto is_coarse = [&](std::size_t k) {
     return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
   };
-  const auto always_straddles = [&](std::size_t k) { return !plan.straddles_.empty() && plan.straddles_[k]; };
+  const std::uint8_t *const straddles = plan.straddles_.empty() ? nullptr : plan.straddles_.data(),
+                            *const cuts = set_->trims ? set_->trims->is_cut.data() : nullptr;
+  const auto always_straddles = [straddles](std::size_t k) { return straddles && straddles[k]; };
   BorderSegments borders(segments, edges_);
-  for (std::size_t k = 0; k < segments.size(); ++k)
-    if (!shapes[k].is_curve || is_cut(k))
-      borders.add(k, static_cast<std::uint16_t>(!is_coarse(k) && !always_straddles(k) && !is_cut(k)));
-  if (!std::all_of(segments.begin(), segments.end(), [](auto s) { return s.are_uniform(); }))
-    borders.part(borders_against());
+  bool are_uniform = true;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const bool is_cut = cuts && cuts[k];
+    if (!shapes[k].is_curve || is_cut)
+      borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_straddles(k)));
+    are_uniform &= segments[k].are_uniform();
+  }
+  if (!are_uniform) borders.part(borders_against());
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;

@@ -13,20 +13,21 @@ void CertifiedPlan::lay_out() {
   std::size_t vertices = 0, triangles = 0, quads = 0;
   const std::span<const CutPatch> cuts = this->cuts();
   auto cut = cuts.begin();
+  std::size_t next_cut = cuts.empty() ? patches : cut->patch;
+  const bool shares = shares_vertices();
   for (std::size_t patch = 0; patch < patches; ++patch) {
     const Division& division = divisions_[patch];
     first_vertex_[patch] = vertices;
     first_triangle_[patch] = triangles;
     first_quad_[patch] = quads;
     if (!division.empty)
-      vertices += division.inner_count() + (shares_vertices() ? owned_ring_count(patch) : division.ring_count());
+      vertices += division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count());
     triangles += division.triangle_count();
-    if (cut != cuts.end() && cut->patch == patch) {
-      vertices += cut->vertices.size();
-      triangles += cut->triangles.size();
-      ++cut;
-    }
     quads += division.cell_count();
+    if (patch != next_cut) continue;
+    vertices += cut->vertices.size();
+    triangles += cut->triangles.size();
+    next_cut = ++cut == cuts.end() ? patches : cut->patch;
   }
   first_vertex_[patches] = vertices;
   first_triangle_[patches] = triangles;
