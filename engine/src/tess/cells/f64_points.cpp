@@ -1,13 +1,22 @@
 #include "tess/cells/f64_points.h"
 
 #include <algorithm>
-
-#include "basis/bernstein.h"
+#include <array>
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+/// C(n,k) for all degrees, by Pascal's triangle.
+constexpr auto binomials = [] {
+  std::array<std::array<double, max_degree + 1>, max_degree + 1> all{};
+  for (std::size_t n = 0; n <= max_degree; ++n) {
+    all[n][0] = 1;
+    for (std::size_t k = 1; k <= n; ++k) all[n][k] = all[n - 1][k - 1] + all[n - 1][k];
+  }
+  return all;
+}();
 
 /// The weights C(n,k) (t^k s^(n-k)) at the fractions t and s = 1 - t. B_k at t is B_{n-k} at s, bit for bit.
 struct Weights {
@@ -20,7 +29,7 @@ struct Weights {
       t[at(k)] = t[at(k - 1)] * fraction.value();
       s[at(k)] = s[at(k - 1)] * fraction.rest();
     }
-    for (int k = 0; k <= degree; ++k) value[at(k)] = binomial(degree, k) * (t[at(k)] * s[at(degree - k)]);
+    for (int k = 0; k <= degree; ++k) value[at(k)] = binomials[at(degree)][at(k)] * (t[at(k)] * s[at(degree - k)]);
   }
 };
 
