@@ -8,16 +8,18 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Makes whole patches cut ones where a point lies inside one of their sides.
+/// Makes whole patches cut ones where a piece ends inside one of their sides and does not run along it.
 class TouchedSides {
  public:
   TouchedSides(const TrimRegion::Impl& region, std::vector<PatchUse>& uses) : region_(region), uses_(uses) {}
 
-  void touch(const ParameterPoint& at) {
+  /// `at`: an end of a piece, `other`: its other end.
+  void touch(const ParameterPoint& at, const ParameterPoint& other) {
     const std::vector<double>&u = region_.lines.u.lines, &v = region_.lines.v.lines;
     const auto line_u = std::ranges::lower_bound(u, at.u), line_v = std::ranges::lower_bound(v, at.v);
     const bool on_u = line_u != u.end() && *line_u == at.u, on_v = line_v != v.end() && *line_v == at.v;
     if (on_u == on_v) return;  // inside a patch, or a corner
+    if (on_u ? at.u == other.u : at.v == other.v) return;
     const std::ptrdiff_t a = line_u - u.begin(), b = line_v - v.begin();
     cut(a - 1, b - 1);
     on_u ? cut(a, b - 1) : cut(a - 1, b);
@@ -47,8 +49,8 @@ std::vector<PatchUse> patch_uses(const TrimRegion& region) {
                                                : PatchUse::cut);
   TouchedSides touched(impl, uses);
   for (const TrimPiece& piece : impl.pieces) {
-    touched.touch(piece.start());
-    touched.touch(piece.end());
+    touched.touch(piece.start(), piece.end());
+    touched.touch(piece.end(), piece.start());
   }
   return uses;
 }

@@ -90,8 +90,7 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
       out.open_edges += is_kept && (lines.is_outer(line) || !has_other);
     }
   }
-  for (const std::uint32_t piece : impl.pieces_of(place))
-    out.open_edges += static_cast<std::uint32_t>(cutter_.add_piece(impl.pieces[piece]));
+  out.open_edges += static_cast<std::uint32_t>(cutter_.add_pieces(impl.pieces, impl.pieces_of(place)));
   return cutter_.cut();
 }
 

@@ -14,6 +14,7 @@ void PatchSides::set(std::span<const TrimPiece> pieces, double ParameterPoint::*
     const ParameterPoint ends[] = {piece.start(), piece.end()};
     for (const bool last : {false, true}) {
       const ParameterPoint &at = ends[last], &other = ends[!last];
+      if (at.*across == other.*across) continue;
       const auto line = std::lower_bound(lines.begin(), lines.end(), at.*across);
       if (line == lines.end() || *line != at.*across) continue;
       nodes_[static_cast<std::size_t>(line - lines.begin())].push_back(

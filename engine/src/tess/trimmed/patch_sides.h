@@ -34,7 +34,7 @@ class PatchSides {
   /// - `starts_inside`: whether points that no piece encloses are kept.
   ///
   /// Parity beside a line: of the pieces that end on the line and lie on that side of it, those count that end before.
-  /// A piece along the line lies on neither side.
+  /// A piece along the line lies on neither side, so its ends are no points of the side.
   void set(std::span<const TrimPiece> pieces, double ParameterPoint::*across, std::span<const double> lines,
            std::span<const double> along, bool starts_inside);
   /// Puts segments on a side, on those parts of it that are kept. The side: line `line` from along[k] to along[k + 1].

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "tess/trimmed/speed_bound.h"
@@ -21,18 +22,20 @@ struct ChordLimits {
   double bend = std::numeric_limits<double>::infinity();
 };
 
-/// Divides monotone pieces into chords by halving.
+/// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over parts of one piece by
+/// halving it.
 ///
-/// Sliver bound: along a part of a piece with the ends a and b and control points q, each point x between curve and
-/// chord meets the curve if it moves along v alone, as the part is monotone. It moves by at most
+/// Sliver bound: along a part of a monotone chain with the ends a and b and control points q, each point x between
+/// curve and chord meets the curve if it moves along v alone, as the part is monotone. It moves by at most
 /// max |(b - a) x (q - a)| / |b.u - a.u|, because the cross product of a point of the curve is a mean of those of the
-/// control points. On the surface that is at most speed.v times as long. The same holds along u; the smaller of both
-/// counts.
+/// control points of its piece. On the surface that is at most speed.v times as long. The same holds along u; the
+/// smaller of both counts.
 class PieceChords {
  public:
-  /// Appends the points of a piece but its start. Returns the largest sliver bound, which is at most limits.sliver,
-  /// unless a piece would need more than 2^20 chords. The piece's own error counts as a part of the sliver.
-  double append(const TrimPiece& piece, const ChordLimits& limits, std::vector<ParameterPoint>& points);
+  /// Appends the points of a chain but its start. `chain`: pieces that follow each other, together monotone in u and in
+  /// v. Returns the largest sliver bound, which is at most limits.sliver, unless a piece would need more than 2^20
+  /// chords. The errors of the pieces count as a part of the sliver.
+  double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points);
 
  private:
   struct Control {
@@ -40,6 +43,18 @@ class PieceChords {
     ParameterPoint point() const { return {u / w, v / w}; }
   };
   using Net = std::array<Control, max_degree + 1>;
+  /// The sliver bound of a chord, and whether it keeps the limits.
+  struct Sliver {
+    double size = 0;
+    bool is_fine = false;
+  };
+  Sliver sliver_of(const ParameterPoint& chord, double cross, double error) const;
+  /// The sliver of a chord over all of a chain.
+  Sliver sliver_over(std::span<const TrimPiece> chain) const;
+  /// The number of pieces that the next chord spans.
+  std::size_t reach(std::span<const TrimPiece> chain) const;
+  double error_of(const TrimPiece& piece) const;
+  void append_one(const TrimPiece& piece);
   void divide(const Net& net, int depth);
 
   const TrimPiece* piece_ = nullptr;

@@ -58,12 +58,28 @@ std::size_t PatchCutter::add_side(std::span<const SidePoint> side, double across
   return chords_.size() - before;
 }
 
-std::size_t PatchCutter::add_piece(const TrimPiece& piece) {
+// Neighbours need the ends on the patch's sides. Chords that had to become finer keep all ends, as they may cross.
+bool PatchCutter::continues(const ParameterPoint& start, const TrimPiece& before, const TrimPiece& next) const {
+  const ParameterPoint &at = next.start(), &to = next.end();
+  const auto is_monotone = [](double x, double y, double z) { return (x <= y && y <= z) || (x >= y && y >= z); };
+  const Domain& d = patch_.domain;
+  return patch_.chord_share == 1 && before.end() == at && is_monotone(start.u, at.u, to.u) &&
+         is_monotone(start.v, at.v, to.v) && at.u != d.u0 && at.u != d.u1 && at.v != d.v0 && at.v != d.v1;
+}
+
+std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span<const std::uint32_t> indices) {
   const std::size_t before = chords_.size();
-  std::uint32_t last = add_point(piece.start());
-  sliver_ = std::max(sliver_, chords_of_pieces_.append(piece, limits_, points_));
-  points_.back() = piece.end();
-  for (; last + 1 < points_.size(); ++last) chords_.push_back({last, last + 1});
+  for (std::size_t k = 0; k < indices.size();) {
+    const std::size_t first = indices[k];
+    std::size_t count = 1;
+    while (k + count < indices.size() && indices[k + count] == first + count &&
+           continues(pieces[first].start(), pieces[first + count - 1], pieces[first + count]))
+      ++count;
+    k += count;
+    std::uint32_t last = add_point(pieces[first].start());
+    sliver_ = std::max(sliver_, chords_of_pieces_.append(pieces.subspan(first, count), limits_, points_));
+    for (; last + 1 < points_.size(); ++last) chords_.push_back({last, last + 1});
+  }
   return chords_.size() - before;
 }
 

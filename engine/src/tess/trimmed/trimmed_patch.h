@@ -35,8 +35,8 @@ class PatchCutter {
   /// Adds the kept parts of a side: points at `along`, the other coordinate is `across`. `above`: the patch lies at
   /// larger parameters across the side. Returns the number of chords.
   std::size_t add_side(std::span<const SidePoint> side, double across, bool runs_along_u, bool above);
-  /// Adds a piece of a loop. Returns the number of chords.
-  std::size_t add_piece(const TrimPiece& piece);
+  /// Adds the pieces of loops with these indices, in the order of the loops. Returns the number of chords.
+  std::size_t add_pieces(std::span<const TrimPiece> pieces, std::span<const std::uint32_t> indices);
   /// Triangulates the polygon. Returns false if chords cross.
   bool cut();
   /// Divides chords where they cross, and triangulates the polygon. Returns false if some still cross.
@@ -54,6 +54,8 @@ class PatchCutter {
 
  private:
   std::uint32_t add_point(const ParameterPoint& point);
+  /// Whether a piece continues a chain of pieces from `start` to the end of `before` so that it stays monotone.
+  bool continues(const ParameterPoint& start, const TrimPiece& before, const TrimPiece& next) const;
 
   TrimmedPatch patch_;
   ChordLimits limits_;
