@@ -1,5 +1,5 @@
 #pragma once
-// Points of a patch in double, one by one and along lines of a grid.
+// Points and normals of a patch in double, one by one and along lines of a grid.
 
 #include <array>
 #include <limits>
@@ -17,17 +17,21 @@ class PatchPoints {
   /// Prepares points relative to `origin`. The patch must outlive this object.
   PatchPoints(const BezierPatch& patch, const Vec3& origin) : patch_(patch), origin_(origin), net_(patch, origin) {}
 
-  /// Fastest for one u after the other.
+  /// Returns the point. Fastest for one u after the other.
   Vec3 at(const ParameterPoint& local);
+  /// Returns the unit normal, zero where there is none. Its direction is within 1e-8 of unit_normal(), which decides
+  /// where rounding could move it farther.
+  Vec3 normal(const ParameterPoint& local);
 
  private:
+  using Row = std::array<Homogeneous, max_degree + 1>;
   void begin_row(double u);
 
   const BezierPatch& patch_;
   Vec3 origin_;
   HomogeneousNet net_;
-  double row_u_ = std::numeric_limits<double>::quiet_NaN();  ///< the u of `row_`
-  std::array<Homogeneous, max_degree + 1> row_;
+  double row_u_ = std::numeric_limits<double>::quiet_NaN();  ///< the u of `row_` and `row_du_`
+  Row row_, row_du_;  ///< control points of the line u = row_u_, their u-derivatives
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -42,7 +42,7 @@ class CutWriter {
       const Vec3 p = points.at(at);
       if (!out_.position.empty()) put_vector(out_.position, vertex, p);
       if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
-      if (!out_.normal.empty()) put_vector(out_.normal, vertex, unit_normal(patch, at.u, at.v).direction);
+      if (!out_.normal.empty()) put_vector(out_.normal, vertex, points.normal(at));
       if (!out_.parameter.empty()) {
         out_.parameter.at(vertex, 0) = static_cast<float>(at.u);
         out_.parameter.at(vertex, 1) = static_cast<float>(at.v);
