@@ -4,6 +4,8 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <unordered_map>
 
 #include "base/impl_access.h"
 #include "base/text.h"
@@ -15,6 +17,57 @@
 
 namespace tessera::inline abi_0_1 {
 namespace {
+
+/// What the loops of a face keep.
+struct FaceTrims {
+  TrimRegion region;
+  std::vector<PatchUse> uses;               ///< by patch_uses(); empty if the face is whole
+  std::optional<std::uint32_t> index = {};  ///< into PatchTrims::regions
+};
+
+/// Finds the trims of faces. Faces of equal loops over equal grids share them, as instances of a part do.
+class FaceTrimsFinder {
+ public:
+  /// Returns the trims of the next face, to stay until the next call. `loops` must outlive this object.
+  Result<FaceTrims*> find(const std::vector<TrimLoop>& loops, const PatchGrid& grid) {
+    const TrimOptions options = TrimRegion::Impl::options_of(grid);
+    const auto [first, last] = known_.equal_range(key_of(loops));
+    for (auto known = first; known != last; ++known)
+      if (known->second.is_for(loops, grid, options)) return &known->second.trims;
+    Result<TrimRegion> region =
+        TrimRegion::Impl::make(loops, grid.breaks_u(), grid.breaks_v(), options, TrimRegion::Impl::Use::patches);
+    if (!region) return region.status();
+    FaceTrims trims{*std::move(region), {}};
+    if (!trims.region.is_whole()) trims.uses = patch_uses(trims.region);
+    return &known_.emplace(key_of(loops), Known{&loops, options, std::move(trims)})->second.trims;
+  }
+
+ private:
+  struct Known {
+    const std::vector<TrimLoop>* loops;
+    TrimOptions options;
+    FaceTrims trims;
+
+    bool is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid, const TrimOptions& other) const {
+      const CutLines& lines = impl_of(trims.region).lines;
+      return options.periodic_u == other.periodic_u && options.periodic_v == other.periodic_v &&
+             std::ranges::equal(lines.u.lines, grid.breaks_u()) && std::ranges::equal(lines.v.lines, grid.breaks_v()) &&
+             std::ranges::equal(*loops, others, [](const TrimLoop& a, const TrimLoop& b) {
+               return a.hole == b.hole && a.curves == b.curves;
+             });
+    }
+  };
+
+  /// A number that loops share with few others.
+  static double key_of(const std::vector<TrimLoop>& loops) {
+    double key = 0;
+    for (const TrimLoop& loop : loops)
+      for (const Curve& curve : loop.curves) key += curve.points().front().x + 0.7548776662466927 * curve.points()[1].y;
+    return key;
+  }
+
+  std::unordered_multimap<double, Known> known_;
+};
 
 /// The patches of one surface after the other, and the source of each patch.
 struct Gathered {
@@ -50,21 +103,23 @@ struct Gathered {
   }
 
   /// Adds what a face keeps of its patches.
-  void add_kept(std::size_t surface, const PatchGrid& grid, TrimRegion region) {
-    const std::vector<PatchUse> uses = patch_uses(region);
+  void add_kept(std::size_t surface, const PatchGrid& grid, FaceTrims& face) {
+    const std::vector<PatchUse>& uses = face.uses;
     note_error(grid);
     surface_count = surface + 1;
-    const std::size_t cuts_before = trims.cuts.size();
+    if (!face.index && std::ranges::find(uses, PatchUse::cut) != uses.end()) {
+      face.index = static_cast<std::uint32_t>(trims.regions.size());
+      trims.regions.push_back(face.region);
+    }
     for (std::size_t place = 0; place < uses.size(); ++place) {
       if (uses[place] == PatchUse::out) continue;
       if (uses[place] == PatchUse::cut)
-        trims.cuts.push_back({static_cast<std::uint32_t>(patches.size()),
-                              static_cast<std::uint32_t>(trims.regions.size()), static_cast<std::uint32_t>(place)});
+        trims.cuts.push_back(
+            {static_cast<std::uint32_t>(patches.size()), *face.index, static_cast<std::uint32_t>(place)});
       sources.push_back({static_cast<std::uint32_t>(surface), grid.patch_domain(place)});
       patches.push_back(grid.patches()[place]);
       box.extend(patches.back().hull_box());
     }
-    if (trims.cuts.size() > cuts_before) trims.regions.push_back(std::move(region));
   }
 
   void note_error(const PatchGrid& grid) {
@@ -151,13 +206,13 @@ class ModelPatches {
     if (!options_.trims || loops.empty()) {
       all_.add(k, std::move(grid));
     } else {
-      Result<TrimRegion> region = TrimRegion::Impl::make(loops, grid, TrimRegion::Impl::Use::patches);
-      if (!region && region.status().code() == StatusCode::out_of_memory) return region.status();
-      if (!region) faults_.push_back(in_surface(model_, k, region.status()));
-      if (!region || region->is_whole()) {
+      const Result<FaceTrims*> trims = trims_.find(loops, grid);
+      if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
+      if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
+      if (!trims || (*trims)->region.is_whole()) {
         all_.add(k, std::move(grid));
       } else {
-        all_.add_kept(k, grid, *std::move(region));
+        all_.add_kept(k, grid, **trims);
       }
     }
     ends_.push_back(all_.patches.size());
@@ -177,6 +232,7 @@ class ModelPatches {
   const Model& model_;
   const PatchSetOptions& options_;
   Gathered all_;
+  FaceTrimsFinder trims_;
   std::vector<Status> faults_;
   std::vector<std::size_t> ends_;  ///< the end of each surface's patches
 };

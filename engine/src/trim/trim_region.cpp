@@ -149,10 +149,13 @@ Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, std::
   });
 }
 
-Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use) {
+TrimOptions TrimRegion::Impl::options_of(const PatchGrid& grid) {
   constexpr double file_digits = 0x1p-32;  // files state the ends of curves to about 10 digits
-  const TrimOptions options{.periodic_u = closes(grid, true), .periodic_v = closes(grid, false), .snap = file_digits};
-  return make(loops, grid.breaks_u(), grid.breaks_v(), options, use);
+  return {.periodic_u = closes(grid, true), .periodic_v = closes(grid, false), .snap = file_digits};
+}
+
+Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use) {
+  return make(loops, grid.breaks_u(), grid.breaks_v(), options_of(grid), use);
 }
 
 Result<TrimRegion> TrimRegion::make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,

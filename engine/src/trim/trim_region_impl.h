@@ -22,6 +22,8 @@ class TrimRegion::Impl {
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
                                  std::span<const double> breaks_v, const TrimOptions& options, Use use);
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use);
+  /// How loops over a grid are repaired.
+  static TrimOptions options_of(const PatchGrid& grid);
 
   CutLines lines;
   Domain domain;
