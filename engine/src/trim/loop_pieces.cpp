@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/text.h"
 #include "tessera/convert.h"
@@ -17,9 +18,14 @@ constexpr double max_periods = 64;
 
 using Coordinate = double ParameterPoint::*;
 
+/// Whether the lines of a periodic axis must be repeated to cover [from, to].
+bool repeats(const CutAxis& axis, double from, double to) {
+  return axis.periodic && !(from >= axis.from() && to <= axis.to());
+}
+
 /// The lines of an axis repeated by its period over [from, to].
 CutAxis repeated(const CutAxis& axis, double from, double to) {
-  if (!axis.periodic || (from >= axis.from() && to <= axis.to())) return axis;
+  if (!repeats(axis, from, to)) return axis;
   CutAxis all = axis;
   all.lines.clear();
   const double first = std::floor((from - axis.from()) / axis.period()) - 1;
@@ -62,6 +68,9 @@ class LoopBuilder {
       : loop_(loop), index_(index), lines_(lines) {}
 
   Result<LoopPieces> build() {
+    std::size_t spans = 0;
+    for (const Curve& curve : loop_.curves) spans += curve.points().size() / static_cast<std::size_t>(curve.degree());
+    made_.pieces.reserve(spans);
     for (std::size_t k = 0; k < loop_.curves.size(); ++k)
       if (Status status = append_curve(k); !status.ok()) return status;
     join();
@@ -73,6 +82,10 @@ class LoopBuilder {
   Status append_curve(std::size_t k) {
     const Curve& curve = loop_.curves[k];
     if (Status status = set_lines(curve); !status.ok()) return status;
+    if (is_bezier(curve)) {
+      append_spans(curve, static_cast<std::uint32_t>(k));
+      return {};
+    }
     const Result<BezierPieces> spans = to_bezier(curve);
     if (!spans) return spans.status();
     const auto degree = static_cast<std::size_t>(spans->degree);
@@ -84,7 +97,6 @@ class LoopBuilder {
     const ParameterPoint inserted = roundings * 0x1p-53 * largest;
     for (std::size_t span = 0; span + 1 < spans->breaks.size(); ++span) {
       PlaneBezier bezier;
-      bezier.points.reserve(degree + 1);
       for (std::size_t i = span * degree; i <= (span + 1) * degree; ++i) {
         bezier.points.push_back({spans->points[i].x, spans->points[i].y});
         if (!spans->weights.empty()) bezier.weights.push_back(spans->weights[i]);
@@ -94,6 +106,30 @@ class LoopBuilder {
       append(std::move(bezier), error, static_cast<std::uint32_t>(k), range);
     }
     return {};
+  }
+
+  /// Whether the control points of all spans are the curve's own: its domain is that of the knots, and each knot there
+  /// has full multiplicity.
+  static bool is_bezier(const Curve& curve) {
+    const auto knots = curve.knots();
+    const auto degree = static_cast<std::size_t>(curve.degree()), count = curve.points().size();
+    if ((count - 1) % degree != 0 || curve.domain().from != knots[1] || curve.domain().to != knots[count]) return false;
+    for (std::size_t k = 1; k <= count; k += degree)
+      if (knots[k] != knots[k + degree - 1] || !(knots[k] < knots[k + degree] || k == count)) return false;
+    return true;
+  }
+
+  /// Appends the spans of a curve for which is_bezier() holds.
+  void append_spans(const Curve& curve, std::uint32_t index) {
+    const auto degree = static_cast<std::size_t>(curve.degree());
+    for (std::size_t first = 0; first + 1 < curve.points().size(); first += degree) {
+      PlaneBezier bezier;
+      for (std::size_t i = first; i <= first + degree; ++i) {
+        bezier.points.push_back({curve.points()[i].x, curve.points()[i].y});
+        if (curve.is_rational()) bezier.weights.push_back(curve.weight(i));
+      }
+      append(std::move(bezier), {}, index, {curve.knots()[first + 1], curve.knots()[first + degree + 1]});
+    }
   }
 
   /// Whether the span's control points are the curve's own, so that they were not computed: both knots have full
@@ -120,8 +156,14 @@ class LoopBuilder {
     if ((lines_.u.periodic && u1 - u0 > max_periods * lines_.u.period()) ||
         (lines_.v.periodic && v1 - v0 > max_periods * lines_.v.period()))
       return unsupported("runs over more than 64 periods of the surface");
-    all_ = {repeated(lines_.u, u0, u1), repeated(lines_.v, v0, v1)};
+    set_lines(u0, u1, v0, v1);
     return {};
+  }
+  void set_lines(double u0, double u1, double v0, double v1) {
+    all_ = &lines_;
+    if (!repeats(lines_.u, u0, u1) && !repeats(lines_.v, v0, v1)) return;
+    repeated_ = {repeated(lines_.u, u0, u1), repeated(lines_.v, v0, v1)};
+    all_ = &repeated_;
   }
 
   Status unsupported(const std::string& what) const {
@@ -134,13 +176,13 @@ class LoopBuilder {
     like.curve_index = curve;
     like.range = range;
     const std::size_t begin = made_.pieces.size();
-    append_monotone_pieces(std::move(bezier), error, like, all_, made_.pieces);
+    append_monotone_pieces(std::move(bezier), error, like, *all_, made_.pieces);
     for (std::size_t k = begin; k < made_.pieces.size(); ++k) {
       TrimPiece& piece = made_.pieces[k];
       double turns_u = 0, turns_v = 0;
-      piece.error.u += shift_into_domain(piece, lines_.u, all_.u, &ParameterPoint::u, turns_u);
-      piece.error.v += shift_into_domain(piece, lines_.v, all_.v, &ParameterPoint::v, turns_v);
-      is_odd_copy_.push_back(std::fmod(turns_u, 2) != 0);
+      piece.error.u += shift_into_domain(piece, lines_.u, all_->u, &ParameterPoint::u, turns_u);
+      piece.error.v += shift_into_domain(piece, lines_.v, all_->v, &ParameterPoint::v, turns_v);
+      is_odd_copy_.push_back(turns_u != 0 && std::fmod(turns_u, 2) != 0);
     }
   }
 
@@ -165,39 +207,51 @@ class LoopBuilder {
   }
 
   void join() {
-    std::vector<TrimPiece> given;
-    given.swap(made_.pieces);
-    made_.pieces.reserve(given.size());
-    std::vector<bool> is_odd_copy;
-    is_odd_copy.swap(is_odd_copy_);
+    std::vector<std::pair<std::size_t, ParameterPoint>> gaps;  // the piece before, and the way to the next
     double way_u = 0, way_v = 0;
-    for (std::size_t k = 0; k < given.size(); ++k) {
-      made_.pieces.push_back(std::move(given[k]));
-      is_odd_copy_.push_back(is_odd_copy[k]);
-      TrimPiece& piece = made_.pieces.back();
-      TrimPiece& next = k + 1 < given.size() ? given[k + 1] : made_.pieces.front();
-      way_u += piece.end().u - piece.start().u;
-      way_v += piece.end().v - piece.start().v;
-      const ParameterPoint end = piece.end(), start = next.start();
+    for (std::size_t k = 0; k < made_.pieces.size(); ++k) {
+      TrimPiece& piece = made_.pieces[k];
+      TrimPiece& next = made_.pieces[k + 1 < made_.pieces.size() ? k + 1 : 0];
+      const ParameterPoint begin = piece.start(), end = piece.end(), start = next.start();
       const double du = gap(lines_.u, end.u, start.u), dv = gap(lines_.v, end.v, start.v);
-      way_u += du;
-      way_v += dv;
-      const bool rounding = std::abs(du) <= lines_.u.snap && std::abs(dv) <= lines_.v.snap;
-      if (rounding && (du != 0 || dv != 0)) {
+      way_u += end.u - begin.u + du;
+      way_v += end.v - begin.v + dv;
+      if (du == 0 && dv == 0) continue;
+      if (std::abs(du) <= lines_.u.snap && std::abs(dv) <= lines_.v.snap) {
         ParameterPoint from = end, to = start;
         if (du != 0) meet(lines_.u, from.u, to.u);
         if (dv != 0) meet(lines_.v, from.v, to.v);
-        move_ends(piece, piece.start(), from);
+        move_ends(piece, begin, from);
         move_ends(next, to, next.end());
+      } else {
+        gaps.push_back({k, {du, dv}});
       }
-      if (!rounding) close_gap(piece, next, du, dv);  // may move the pieces in memory
     }
     if (lines_.u.periodic) made_.turns_u = static_cast<int>(std::lround(way_u / lines_.u.period()));
     if (lines_.v.periodic) made_.turns_v = static_cast<int>(std::lround(way_v / lines_.v.period()));
+    if (!gaps.empty()) close_gaps(gaps);
   }
 
-  void close_gap(const TrimPiece& before, const TrimPiece& after, double du, double dv) {
-    const ParameterPoint from = before.end(), to = after.start();
+  void close_gaps(const std::vector<std::pair<std::size_t, ParameterPoint>>& gaps) {
+    std::vector<TrimPiece> given;
+    given.swap(made_.pieces);
+    std::vector<bool> is_odd_copy;
+    is_odd_copy.swap(is_odd_copy_);
+    const ParameterPoint start = given.front().start();
+    auto next_gap = gaps.begin();
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      made_.pieces.push_back(std::move(given[k]));
+      is_odd_copy_.push_back(is_odd_copy[k]);
+      if (next_gap == gaps.end() || next_gap->first != k) continue;
+      close_gap(made_.pieces.back(), k + 1 < given.size() ? given[k + 1].start() : start, next_gap->second);
+      ++next_gap;
+    }
+  }
+
+  /// Closes the gap from a piece to the point `to`, `du` and `dv` away.
+  void close_gap(const TrimPiece& before, const ParameterPoint& to, const ParameterPoint& way) {
+    const ParameterPoint from = before.end();
+    const double du = way.u, dv = way.v;
     const double size = std::max(std::abs(du), std::abs(dv));
     ++made_.gaps;
     if (size > made_.largest_gap) {
@@ -206,8 +260,8 @@ class LoopBuilder {
     }
     const bool wraps = du != to.u - from.u || dv != to.v - from.v;
     const ParameterPoint target = wraps ? ParameterPoint{from.u + du, from.v + dv} : to;
-    all_ = {repeated(lines_.u, std::min(from.u, target.u), std::max(from.u, target.u)),
-            repeated(lines_.v, std::min(from.v, target.v), std::max(from.v, target.v))};
+    set_lines(std::min(from.u, target.u), std::max(from.u, target.u), std::min(from.v, target.v),
+              std::max(from.v, target.v));
     const bool was_odd = is_odd_copy_.back();  // `from` lies in that copy
     const std::size_t begin = is_odd_copy_.size();
     append({{from, target}, {}}, {}, TrimPiece::none, {0, 1});
@@ -244,7 +298,8 @@ class LoopBuilder {
   const TrimLoop& loop_;
   std::uint32_t index_;
   const CutLines& lines_;
-  CutLines all_;  ///< the lines of all copies of the domain that the curve meets
+  CutLines repeated_;
+  const CutLines* all_ = &lines_;  ///< the lines of all copies of the domain that the curve meets
   LoopPieces made_;
   std::vector<bool> is_odd_copy_;  ///< of each piece: whether it came from a copy of the domain of odd number along u
 };

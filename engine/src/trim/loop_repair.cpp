@@ -22,7 +22,10 @@ bool is_less(const ParameterPoint& a, const ParameterPoint& b) { return a.u != b
 std::vector<ParameterPoint> odd_ends(const std::vector<TrimPiece>& pieces) {
   std::vector<ParameterPoint> ends;
   for (const TrimPiece& piece : pieces) {
-    ends.push_back(piece.start());
+    if (!ends.empty() && ends.back() == piece.start())  // most pieces follow each other
+      ends.pop_back();
+    else
+      ends.push_back(piece.start());
     ends.push_back(piece.end());
   }
   std::sort(ends.begin(), ends.end(), is_less);
@@ -69,7 +72,10 @@ class LoopRepair {
       turns_v_ += loop->turns_v;
       holds_corner_[0] ^= loop->holds_left;
       holds_corner_[1] ^= loop->holds_right;
-      std::move(loop->pieces.begin(), loop->pieces.end(), std::back_inserter(made_.pieces));
+      if (made_.pieces.empty())
+        made_.pieces = std::move(loop->pieces);
+      else
+        std::move(loop->pieces.begin(), loop->pieces.end(), std::back_inserter(made_.pieces));
     }
     made_.starts_inside = all_holes;
     const Direction u{lines_.u, lines_.v, &ParameterPoint::u, &ParameterPoint::v};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -17,7 +18,7 @@ ParameterPoint largest_coordinates(const PlaneBezier& curve) {
 }
 
 /// Makes one coordinate of the control polygon monotone between its ends, and returns how far a point moved.
-double make_monotone(std::vector<ParameterPoint>& points, double ParameterPoint::*x) {
+double make_monotone(std::span<ParameterPoint> points, double ParameterPoint::*x) {
   const double first = points.front().*x, last = points.back().*x;
   const bool increases = first <= last;
   double before = first, moved = 0;
@@ -55,9 +56,14 @@ class Cutter {
   }
 
   void run() {
-    std::vector<double> parameters{0, 1};
+    std::vector<double> parameters;
     append_extrema(curve_, 0, parameters);
     append_extrema(curve_, 1, parameters);
+    if (const Cut first = cut_at(0), last = cut_at(1);
+        parameters.empty() && !crosses(lines_.u, first.at.u, last.at.u) && !crosses(lines_.v, first.at.v, last.at.v))
+      return append_piece(first, last, max_depth);
+    parameters.push_back(0);
+    parameters.push_back(1);
     std::sort(parameters.begin(), parameters.end());
     parameters.erase(std::unique(parameters.begin(), parameters.end()), parameters.end());
     std::vector<Cut> cuts;
@@ -66,10 +72,18 @@ class Cutter {
       if (!cuts.empty()) append_crossings(cuts.back(), next, cuts);
       cuts.push_back(next);
     }
-    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) append_piece(cuts[k], cuts[k + 1], 30);
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) append_piece(cuts[k], cuts[k + 1], max_depth);
   }
 
  private:
+  static constexpr int max_depth = 30;
+
+  /// Whether a line lies strictly between two coordinates.
+  static bool crosses(const CutAxis& axis, double a, double b) {
+    const auto line = std::upper_bound(axis.lines.begin(), axis.lines.end(), std::min(a, b));
+    return line != axis.lines.end() && *line < std::max(a, b);
+  }
+
   Cut cut_at(double t) const {
     const ParameterPoint exact = precise_point(curve_, t).rounded(), at = lines_.snapped(exact);
     return {t, at, distance(exact, at)};

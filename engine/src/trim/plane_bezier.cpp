@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "basis/bernstein.h"
 
@@ -143,6 +144,16 @@ void append_roots(std::vector<double> c, double noise, double from, double to, i
   append_roots(upper, noise, middle, to, depth - 1, roots);
 }
 
+/// Whether a coordinate of a control polygon never turns. Then that of the curve does not either.
+bool is_monotone(std::span<const ParameterPoint> points, double ParameterPoint::*x) {
+  bool rises = false, falls = false;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    rises = rises || points[k].*x > points[k - 1].*x;
+    falls = falls || points[k].*x < points[k - 1].*x;
+  }
+  return !(rises && falls);
+}
+
 }  // namespace
 
 PrecisePoint precise_point(const PlaneBezier& curve, double t) {
@@ -163,15 +174,15 @@ PlaneBezier part(const PlaneBezier& curve, double t0, double t1) {
   HomogeneousNet net = homogeneous(curve);
   if (t1 < 1) split(net, count, rational, {t1, 0}, true);
   if (t0 > 0) split(net, count, rational, t1 < 1 ? quotient({t0, 0}, {t1, 0}) : DoubleDouble{t0, 0}, false);
-  PlaneBezier result{std::vector<ParameterPoint>(count), {}};
-  for (std::size_t i = 0; i < count; ++i) result.points[i] = projected(net[i], rational).rounded();
+  PlaneBezier result;
+  for (std::size_t i = 0; i < count; ++i) result.points.push_back(projected(net[i], rational).rounded());
   if (rational)
     for (std::size_t i = 0; i < count; ++i) result.weights.push_back(net[i].w.rounded());
   return result;
 }
 
 void append_extrema(const PlaneBezier& curve, int along, std::vector<double>& parameters) {
-  if (curve.degree() == 1) return;
+  if (is_monotone(curve.points, along == 0 ? &ParameterPoint::u : &ParameterPoint::v)) return;
   std::vector<double> c = derivative_numerator(curve, along == 0 ? &ParameterPoint::u : &ParameterPoint::v);
   double largest = 0;
   for (const double value : c) largest = std::max(largest, std::abs(value));

@@ -9,13 +9,15 @@
 #include "basis/double_double.h"
 #include "tessera/bezier_patch.h"
 #include "tessera/geometry.h"
+#include "trim/short_list.h"
 
 namespace tessera::inline abi_0_1 {
 
 /// A Bezier curve of degree 1 to max_degree over [0, 1]; rational if it has weights, which are positive.
 struct PlaneBezier {
-  std::vector<ParameterPoint> points;
-  std::vector<double> weights = {};  ///< one per point; empty for a polynomial curve
+  static constexpr std::size_t points_in_place = 4;  // most curves are of degree 1 to 3
+  ShortList<ParameterPoint, points_in_place> points;
+  ShortList<double, points_in_place> weights = {};  ///< one per point; empty for a polynomial curve
 
   int degree() const { return static_cast<int>(points.size()) - 1; }
   double weight(std::size_t i) const { return weights.empty() ? 1 : weights[i]; }

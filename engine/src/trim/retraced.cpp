@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <utility>
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -18,26 +18,29 @@ class RetracedPairs {
     // that neither curves with their middles at one u nor those at one v share a key.
     const double mix = 0.7548776662466927 * (snap_u_ > 0 && snap_v_ > 0 ? snap_u_ / snap_v_ : 1);
     const double window = 4 * (snap_u_ + mix * snap_v_);
-    std::vector<std::uint32_t> order(pieces_.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t k) {
-      const ParameterPoint &a = pieces_[k].start(), &b = pieces_[k].end();
-      return (a.u + b.u) + mix * (a.v + b.v);
-    };
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+    std::vector<std::pair<double, std::uint32_t>> order;  // key, piece
+    order.reserve(pieces_.size());
+    for (const TrimPiece& piece : pieces_) {
+      const ParameterPoint &a = piece.start(), &b = piece.end();
+      order.emplace_back((a.u + b.u) + mix * (a.v + b.v), static_cast<std::uint32_t>(order.size()));
+    }
+    std::ranges::sort(order);
     for (std::size_t i = 0; i < order.size(); ++i) {
-      if (dropped_[order[i]]) continue;
-      for (std::size_t j = i + 1; j < order.size() && key(order[j]) - key(order[i]) <= window; ++j) {
-        if (dropped_[order[j]]) continue;
-        const TrimPiece &a = pieces_[order[i]], &b = pieces_[order[j]];
+      const auto [key, first] = order[i];
+      if (dropped_[first]) continue;
+      for (std::size_t j = i + 1; j < order.size() && order[j].first - key <= window; ++j) {
+        const std::uint32_t second = order[j].second;
+        if (dropped_[second]) continue;
+        const TrimPiece &a = pieces_[first], &b = pieces_[second];
         const bool forward = same(a, b, false);
         if (!forward && !same(a, b, true)) continue;
-        dropped_[order[i]] = dropped_[order[j]] = true;
+        dropped_[first] = dropped_[second] = true;
         join(a.start(), forward ? b.start() : b.end(), a.loop);
         join(a.end(), forward ? b.end() : b.start(), a.loop);
         break;
       }
     }
+    if (std::ranges::find(dropped_, true) == dropped_.end()) return 0;
     const auto count = static_cast<std::size_t>(std::count(dropped_.begin(), dropped_.end(), true));
     std::size_t kept = 0;
     for (std::size_t k = 0; k < dropped_.size(); ++k) {
