@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "base/text.h"
-#include "tessera/convert.h"
+#include "convert/spline/curve_pieces.h"
+#include "surface/spline/spline_lines.h"
 #include "trim/monotone_pieces.h"
 
 namespace tessera::inline abi_0_1 {
@@ -86,26 +87,35 @@ class LoopBuilder {
       append_spans(curve, static_cast<std::uint32_t>(k));
       return {};
     }
-    const Result<BezierPieces> spans = to_bezier(curve);
-    if (!spans) return spans.status();
-    const auto degree = static_cast<std::size_t>(spans->degree);
+    const BezierPieces spans = bezier_pieces(curve, extraction_of(curve));
+    const auto degree = static_cast<std::size_t>(spans.degree);
     ParameterPoint largest;
     for (const Vec3& p : curve.points()) largest = larger(largest, distance({p.x, p.y}, {}));
     // Knot insertion takes convex combinations, in `degree` levels of at most 4 roundings each. Weights that are off by
     // as much move a rational curve by twice that share of its size.
     const double roundings = (curve.is_rational() ? 12 : 4) * static_cast<double>(degree + 1);
     const ParameterPoint inserted = roundings * 0x1p-53 * largest;
-    for (std::size_t span = 0; span + 1 < spans->breaks.size(); ++span) {
+    for (std::size_t span = 0; span + 1 < spans.breaks.size(); ++span) {
       PlaneBezier bezier;
       for (std::size_t i = span * degree; i <= (span + 1) * degree; ++i) {
-        bezier.points.push_back({spans->points[i].x, spans->points[i].y});
-        if (!spans->weights.empty()) bezier.weights.push_back(spans->weights[i]);
+        bezier.points.push_back({spans.points[i].x, spans.points[i].y});
+        if (!spans.weights.empty()) bezier.weights.push_back(spans.weights[i]);
       }
-      const Interval range{spans->breaks[span], spans->breaks[span + 1]};
+      const Interval range{spans.breaks[span], spans.breaks[span + 1]};
       const ParameterPoint error = keeps_points(curve, range) ? ParameterPoint{} : inserted;
       append(std::move(bezier), error, static_cast<std::uint32_t>(k), range);
     }
     return {};
+  }
+
+  /// Curves of one file often have equal knots.
+  const Extraction& extraction_of(const Curve& curve) {
+    const bool is_known = extracted_ && extracted_->degree() == curve.degree() &&
+                          extracted_->domain() == curve.domain() &&
+                          std::ranges::equal(extracted_->knots(), curve.knots());
+    if (!is_known) extraction_ = make_extraction(line_of(curve));
+    extracted_ = &curve;
+    return extraction_;
   }
 
   /// Whether the control points of all spans are the curve's own: its domain is that of the knots, and each knot there
@@ -300,6 +310,8 @@ class LoopBuilder {
   const CutLines& lines_;
   CutLines repeated_;
   const CutLines* all_ = &lines_;  ///< the lines of all copies of the domain that the curve meets
+  const Curve* extracted_ = nullptr;
+  Extraction extraction_;  ///< of the curve `extracted_`
   LoopPieces made_;
   std::vector<bool> is_odd_copy_;  ///< of each piece: whether it came from a copy of the domain of odd number along u
 };

@@ -56,14 +56,12 @@ class Cutter {
   }
 
   void run() {
-    std::vector<double> parameters;
+    const Cut start = cut_at(0), end = cut_at(1);
+    const bool crosses_line = crosses(lines_.u, start.at.u, end.at.u) || crosses(lines_.v, start.at.v, end.at.v);
+    if (!crosses_line && append_monotone(start, end)) return;
+    std::vector<double> parameters{0, 1};
     append_extrema(curve_, 0, parameters);
     append_extrema(curve_, 1, parameters);
-    if (const Cut first = cut_at(0), last = cut_at(1);
-        parameters.empty() && !crosses(lines_.u, first.at.u, last.at.u) && !crosses(lines_.v, first.at.v, last.at.v))
-      return append_piece(first, last, max_depth);
-    parameters.push_back(0);
-    parameters.push_back(1);
     std::sort(parameters.begin(), parameters.end());
     parameters.erase(std::unique(parameters.begin(), parameters.end()), parameters.end());
     std::vector<Cut> cuts;
@@ -85,7 +83,10 @@ class Cutter {
   }
 
   Cut cut_at(double t) const {
-    const ParameterPoint exact = precise_point(curve_, t).rounded(), at = lines_.snapped(exact);
+    const ParameterPoint exact = t == 0   ? curve_.points.front()
+                                 : t == 1 ? curve_.points.back()
+                                          : precise_point(curve_, t).rounded();
+    const ParameterPoint at = lines_.snapped(exact);
     return {t, at, distance(exact, at)};
   }
 
@@ -134,21 +135,23 @@ class Cutter {
 
   /// Appends the piece between two cuts; halves it while its control polygon is not monotone.
   void append_piece(const Cut& first, const Cut& last, int depth) {
-    if (!(first.t < last.t)) return;
+    if (!(first.t < last.t) || append_monotone(first, last, depth == 0)) return;
+    const Cut between = cut_at(0.5 * first.t + 0.5 * last.t);
+    append_piece(first, between, depth - 1);
+    append_piece(between, last, depth - 1);
+  }
+
+  /// Appends the piece between two cuts if its control polygon is monotone up to rounding, or `always`. Returns whether
+  /// it did, or the piece is a point.
+  bool append_monotone(const Cut& first, const Cut& last, bool always = false) {
     TrimPiece piece = like_;
     piece.curve = part(curve_, first.t, last.t);
     piece.curve.points.front() = first.at;
     piece.curve.points.back() = last.at;
     const ParameterPoint moved = larger(make_monotone(piece.curve), larger(first.moved, last.moved));
     const ParameterPoint most = 8 * rounding_ + (first.moved + last.moved);
-    if ((moved.u > most.u || moved.v > most.v) && depth > 0) {
-      const double middle = 0.5 * first.t + 0.5 * last.t;
-      const Cut between = cut_at(middle);
-      append_piece(first, between, depth - 1);
-      append_piece(between, last, depth - 1);
-      return;
-    }
-    if (first.at == last.at) return;
+    if ((moved.u > most.u || moved.v > most.v) && !always) return false;
+    if (first.at == last.at) return true;
     const bool whole = first.t == 0 && last.t == 1;
     piece.error = error_ + moved + (whole ? ParameterPoint{} : rounding_);
     const double width = like_.range.to - like_.range.from;
@@ -156,6 +159,7 @@ class Cutter {
                    last.t == 1 ? like_.range.to : like_.range.from + last.t * width};
     set_line(piece, first, last);
     pieces_.push_back(std::move(piece));
+    return true;
   }
 
   void set_line(TrimPiece& piece, const Cut& first, const Cut& last) const {
@@ -186,6 +190,7 @@ class Cutter {
 
 /// Moves a curve that runs along a line of the axis onto it. Returns the displacement.
 double settle_on_line(PlaneBezier& curve, const CutAxis& axis, double ParameterPoint::*x) {
+  if (std::abs(curve.points.back().*x - curve.points.front().*x) > 2 * axis.snap) return 0;
   const double line = axis.snapped(curve.points.front().*x);
   if (!axis.is_line(line)) return 0;
   double moved = 0;

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <string>
 
+#include "convert/spline/curve_pieces.h"
 #include "convert/spline/spline_strips.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
@@ -55,26 +56,28 @@ Result<PatchGrid> to_bezier(const BSplineSurface& surface) {
   });
 }
 
+BezierPieces bezier_pieces(const Curve& curve, const Extraction& extraction) {
+  BezierPieces pieces{curve.degree(), extraction.breaks, {}, {}};
+  pieces.points.reserve(extraction.rows.size());
+  std::optional<Scales> scales;
+  if (curve.is_rational()) scales.emplace(curve.points(), curve.weights());
+  const std::size_t width = scales ? 4 : 3;
+  UnsetVector<double> net(curve.points().size() * width);
+  write_numbers(curve.points(), curve.weights(), scales ? &*scales : nullptr, net.data());
+  for (const Extraction::Row& row : extraction.rows) {
+    std::array<double, 4> values{};
+    apply(extraction, row, net.data(), width, width, values.data());
+    NetPoint at{{values[0], values[1], values[2]}, 1};
+    if (scales) at = project(values.data(), *scales);
+    if (row.count == 1) at = {curve.points()[row.first], curve.weight(row.first)};  // keeps its bits
+    pieces.points.push_back(at.point);
+    if (scales) pieces.weights.push_back(at.weight);
+  }
+  return pieces;
+}
+
 Result<BezierPieces> to_bezier(const Curve& curve) {
-  return guarded([&]() -> Result<BezierPieces> {
-    const Extraction extraction = make_extraction(line_of(curve));
-    BezierPieces pieces{curve.degree(), extraction.breaks, {}, {}};
-    std::optional<Scales> scales;
-    if (curve.is_rational()) scales.emplace(curve.points(), curve.weights());
-    const std::size_t width = scales ? 4 : 3;
-    UnsetVector<double> net(curve.points().size() * width);
-    write_numbers(curve.points(), curve.weights(), scales ? &*scales : nullptr, net.data());
-    for (const Extraction::Row& row : extraction.rows) {
-      std::array<double, 4> values{};
-      apply(extraction, row, net.data(), width, width, values.data());
-      NetPoint at{{values[0], values[1], values[2]}, 1};
-      if (scales) at = project(values.data(), *scales);
-      if (row.count == 1) at = {curve.points()[row.first], curve.weight(row.first)};  // keeps its bits
-      pieces.points.push_back(at.point);
-      if (scales) pieces.weights.push_back(at.weight);
-    }
-    return pieces;
-  });
+  return guarded([&]() -> Result<BezierPieces> { return bezier_pieces(curve, make_extraction(line_of(curve))); });
 }
 
 Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i, std::size_t j) {
