@@ -13,10 +13,10 @@
 
 namespace tessera::test {
 
-inline BSplineSurface wavy() {
+inline BSplineSurface wavy(double x = 0) {
   std::vector<Vec3> points;
   for (int i = 0; i < 7; ++i)
-    for (int j = 0; j < 6; ++j) points.push_back({double(i), double(j), std::sin(1.3 * i) * std::cos(0.9 * j)});
+    for (int j = 0; j < 6; ++j) points.push_back({x + i, double(j), std::sin(1.3 * i) * std::cos(0.9 * j)});
   const std::vector<double> u{0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4}, v{0, 0, 0, 0, 1, 2, 3, 3, 3, 3};
   return value_of(BSplineSurface::polynomial(3, u, 3, v, points));
 }

@@ -1,8 +1,10 @@
 // Meshes of trimmed faces: within their bound in both directions, without cracks between patches.
 
+#include <algorithm>
 #include <functional>
 
 #include "support/triangle_distance.h"
+#include "tess/proven_mesh_of.h"
 #include "tess_trim/plane_reference.h"
 #include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
@@ -180,6 +182,55 @@ TEST(TrimmedFace, LeavesOtherPatchesAsTheyAre) {
   plain.set = value_of(make_patch_set(plain.model, same));
   const auto is_far = [](std::uint32_t patch) { return patch != 0 && patch != 1 && patch != 3; };
   EXPECT_EQ(positions_of(trimmed.mesh(1e-3), is_far), positions_of(plain.mesh(1e-3), is_far));
+}
+
+// The vertices of some patches come from doubles, cut or whole, and those of others from floats.
+TEST(TrimmedFace, FarFromTheOriginKeepsItsBoundWithoutCracks) {
+  for (const ParameterPoint& centre : {ParameterPoint{1.9, 1.4}, ParameterPoint{0.7, 2.2}, ParameterPoint{3.2, 0.8}}) {
+    const std::vector<TrimLoop> loops{circle(centre, 0.6, true)};
+    Face face(wavy(198), loops);
+    face.set = value_of(make_patch_set(face.model, {.origin = Vec3{}}));
+    const Mesh mesh = face.mesh(2e-3);
+    const Tessellation plan = value_of(Tessellation::make(face.set, {.tolerance = 2e-3}));
+    const auto is_f64 = proven_mesh_of(plan).plan().f64_patches();
+    ASSERT_EQ(is_f64.size(), 12u);
+    EXPECT_FALSE(is_f64[0]);
+    EXPECT_TRUE(is_f64[11]);
+    EXPECT_LE(face.bound, 2e-3);
+    EXPECT_EQ(euler_number(expect_joined(face, mesh)), 0);
+    const auto [of_mesh, of_face] = distances(face, outside_of({{centre, 0.6}}), mesh);
+    EXPECT_LE(of_mesh, face.bound);
+    EXPECT_LE(of_face, face.bound);
+  }
+}
+
+// A far face that needs doubles changes nothing of a near one, nor the other way round.
+TEST(TrimmedFace, KeepsItsBitsWithoutOtherFaces) {
+  const std::vector<TrimLoop> loops{circle({1.9, 1.4}, 0.6, true)};
+  Face near(wavy(), loops), far(wavy(1000), loops), both(wavy(), loops);
+  both.model.surfaces.push_back(far.model.surfaces[0]);
+  for (Face* face : {&near, &far, &both}) face->set = value_of(make_patch_set(face->model, {.origin = Vec3{}}));
+  const auto all = [](std::uint32_t) { return true; };
+  const Mesh mesh = both.mesh(2e-3);
+  EXPECT_EQ(positions_of(mesh, [](std::uint32_t k) { return k < 12; }), positions_of(near.mesh(2e-3), all));
+  EXPECT_EQ(positions_of(mesh, [](std::uint32_t k) { return k >= 12; }), positions_of(far.mesh(2e-3), all));
+  EXPECT_EQ(euler_number(expect_joined(both, mesh)), 0);
+}
+
+// Whole patches that give vertices to cut ones follow them: a near camera sees all borders closer than a pixel's share.
+TEST(TrimmedFace, FarFromTheOriginKeepsPixels) {
+  std::size_t mixed = 0;
+  for (double height = 0.2; height < 20; height *= 1.15) {
+    Face face(wavy(10000), {circle({1.9, 1.4}, 0.6, true)});
+    face.set = value_of(make_patch_set(face.model, {.origin = Vec3{}}));
+    const View view{.eye = {10002.9, 2.5, 1 + height}, .target = {10002.9, 2.4, 0}, .width = 640, .height = 480};
+    const Result<Tessellation> plan = Tessellation::make(face.set, {.pixels = PixelTolerance{4, view}});
+    ASSERT_TRUE(plan) << height << ": " << plan.status().message();
+    const auto is_f64 = proven_mesh_of(*plan).plan().f64_patches();
+    mixed += std::ranges::count(is_f64, 0) > 0;
+    EXPECT_LE(plan->pixels(), 4 * (1 + 1e-6));
+  }
+  EXPECT_GT(mixed, 0u);
 }
 
 // Discs apart from each other, kept or cut away: with centres on lines between patches, or touching these lines.

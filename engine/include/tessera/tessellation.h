@@ -175,17 +175,26 @@ struct MeshChange {
 /// any height. Scaled sweeps rho(v) E(u) + T(v), such as surfaces of revolution, extrusions and cones, need no bound on
 /// the mixed derivative.
 ///
-/// Local decisions: the division of a patch depends on the patch, the options, the set's origin and the patches that it
-/// touches, or whose borders lie within the weld. Patches elsewhere and their order make no difference. Exceptions:
-/// lengths that are shares of the set's size, TessellationOptions::fewest and `smallest`, and the choice of sums of
-/// doubles:
+/// Local decisions: the division and the vertices of a patch depend on the patch, the options, the set's origin and the
+/// patches that it touches, or whose borders lie within the weld. Patches elsewhere and their order make no difference.
+/// Exceptions:
+///
+/// - lengths that are shares of the set's size, TessellationOptions::fewest and `smallest`
+/// - where the borders of these patches are moved, by welding or to others of the same float bits: the patches that they
+///   are moved to
+/// - with pixels: whole patches beside cut ones, see below
 ///
 /// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than an eighth of the tolerance,
-/// or all that pixels leave, as for parts far from each other with a small tolerance, then all vertices are sums of
-/// doubles instead, from the set's double control points. These are rounded once to float: off by half a unit in the
-/// last place of a position relative to the set's origin. They take several times as long and are never written past
-/// the caches. Borders that were one edge when the plan was made keep the vertices of one border in later revisions, as
-/// welded ones do.
+/// or all that pixels leave, as for parts far from the set's origin with a small tolerance, then the vertices of the
+/// patch are sums of doubles instead, from the set's double control points. These are rounded once to float: off by half
+/// a unit in the last place of a position relative to the set's origin. They take several times as long, and a mesh that
+/// has any is never written past the caches.
+///
+/// - `smallest`: if one patch needs doubles, all patches take them.
+/// - Pixels: so do whole patches beside cut ones that need them.
+/// - A common border of a patch of doubles and one of floats has the vertices of doubles.
+/// - Borders with such vertices that were one edge when the plan was made keep the vertices of one border in later
+///   revisions, as welded ones do.
 ///
 /// No cracks: borders whose packed control points are the same bits, in either direction, run at one rate, and their
 /// vertices are the same bits in both patches. Each patch has an inner grid at its own rates, and strips of triangles

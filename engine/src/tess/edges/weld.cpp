@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "tess/edges/side_curve.h"
@@ -88,13 +89,17 @@ class Welder {
       has_more[edge] = leading[edge] != none;
       leading[edge] = std::min(leading[edge], border);
     });
+    if (rules.f64_patches.empty()) return;
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (is_f64(border) && leads(border, leading_[edge])) leading_[edge] = border;
+    });
   }
 
   Weld run(std::span<const double> roundings) {
     const bool joins = rules_.reach > 0 && join_edges();
     if (joins) choose_givers();
     const bool makes_points = rules_.reach > 0 && find_poles(roundings);
-    if (!joins && !makes_points && !rules_.every_edge) return {};
+    if (!joins && !makes_points && rules_.f64_patches.empty()) return {};
     if (!makes_points) is_pole_.assign(leading_.size(), 0);
     find_shapes();
     UnionFind corners(4 * set_.patches.size());
@@ -110,6 +115,14 @@ class Welder {
  private:
   SideCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
   std::uint32_t edge_of_border(std::uint32_t border) const { return edges_.edge(patch_of(border), side_of(border)); }
+  /// Whether the vertices of a border or corner come from double control points.
+  bool is_f64(std::uint32_t border) const {
+    return !rules_.f64_patches.empty() && rules_.f64_patches[patch_of(border)];
+  }
+  /// Whether a border rather than another gives its points to both, in any order of the patches.
+  bool leads(std::uint32_t border, std::uint32_t other) const {
+    return is_f64(border) == is_f64(other) ? comes_before(curve(border), curve(other)) : is_f64(border);
+  }
 
   /// Calls visit(border, edge) for borders of patches with an area.
   template <class Visit>
@@ -203,8 +216,7 @@ class Welder {
     std::iota(givers_.begin(), givers_.end(), std::uint32_t{0});
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
       std::uint32_t& giver = givers_[joined_->find(edge).member];
-      if (giver != edge && leading_[edge] != none && comes_before(curve(leading_[edge]), curve(leading_[giver])))
-        giver = edge;
+      if (giver != edge && leading_[edge] != none && leads(leading_[edge], leading_[giver])) giver = edge;
     }
   }
 
@@ -268,17 +280,18 @@ class Welder {
     });
   }
 
-  /// Returns for each corner the one that gives it its point: of those that meet, that with the least coordinates.
+  /// Returns for each corner the one that gives it its point: of those that meet, that with the least coordinates;
+  /// those of doubles come first.
   std::vector<std::uint32_t> corner_givers(UnionFind& corners) const {
-    const auto point = [&](std::uint32_t corner) {
+    const auto rank = [&](std::uint32_t corner) {
       const Vec3 p = corner_of(set_.patches[patch_of(corner)], corner);
-      return std::array{p.x, p.y, p.z};
+      return std::tuple(!is_f64(corner), p.x, p.y, p.z);
     };
     std::vector<std::uint32_t> givers(4 * set_.patches.size());
     std::iota(givers.begin(), givers.end(), std::uint32_t{0});
     for (std::uint32_t corner = 0; corner < givers.size(); ++corner) {
       std::uint32_t& giver = givers[corners.find(corner).member];
-      if (giver != corner && point(corner) < point(giver)) giver = corner;
+      if (giver != corner && rank(corner) < rank(giver)) giver = corner;
     }
     for (std::uint32_t corner = 0; corner < givers.size(); ++corner) {
       const std::uint32_t root = corners.find(corner).member;
@@ -294,14 +307,13 @@ class Welder {
       for (std::uint32_t side = 0; side < 4; ++side) {
         const std::uint32_t border = static_cast<std::uint32_t>(4 * patch) + side, edge = edge_of_border(border);
         const std::uint32_t corner = givers[border];
-        const bool moves = !(packed(corner) == packed(border)),
-                   takes = moves || (rules_.every_edge && corner != border);
+        const bool moves = !(packed(corner) == packed(border)), takes = moves || (is_f64(corner) && corner != border);
         if (takes) weld_.corners.push_back({border, corner});
         const bool was_point = edge == none;
         if (was_point || is_pole_[canonical(edge)]) {
           if (!was_point || takes) weld_.poles.push_back({border, corner});
           if (!was_point || moves) ++weld_.joined_by_distance;
-        } else if (canonical(edge) != edge || (rules_.every_edge && leading_[edge] != border)) {
+        } else if (canonical(edge) != edge || (is_f64(leading_[edge]) && leading_[edge] != border)) {
           weld_.borders.push_back({border, leading_[canonical(edge)], runs_against(border, edge)});
           if (canonical(edge) != edge) ++weld_.joined_by_distance;
         }
@@ -321,7 +333,8 @@ class Welder {
   std::span<const PatchShape> shapes_;  ///< before welding
   WeldRules rules_;
   SharedEdges& edges_;
-  std::vector<std::uint32_t> leading_;  ///< `[edge]`: its leading border, the first one of a patch with an area
+  /// `[edge]`: its leading border: if there are any of doubles, one of these, else the first of a patch with an area.
+  std::vector<std::uint32_t> leading_;
   std::vector<std::uint8_t> has_more_;  ///< `[edge]`: whether it has more than one border of patches with an area
   std::optional<UnionFind> joined_;     ///< sets of joined edges, if any are
   std::vector<std::uint32_t> givers_;   ///< `[edge]`: for the member that stands for a joined set, its canonical edge
@@ -358,19 +371,24 @@ void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies
   const auto packed = [&](std::uint32_t border) { return PackedBorder(set, patch_of(border), side_of(border)); };
   for (const VertexCopies::Border& copy : copies.borders) {
     if (!wanted(patch_of(copy.to))) continue;
-    if (same_bits_stay && equal(packed(copy.to), packed(copy.from), copy.reversed)) continue;
-    moved(copy.to, copy.from, distance_bound(curve_of(set, copy.to), curve_of(set, copy.from), copy.reversed));
+    const auto is_same = [&] { return equal(packed(copy.to), packed(copy.from), copy.reversed); };
+    if (same_bits_stay && is_same()) continue;
+    const double distance = distance_bound(curve_of(set, copy.to), curve_of(set, copy.from), copy.reversed);
+    if (distance > 0 || !is_same()) moved(copy.to, copy.from, distance);
   }
   for (const VertexCopies::Corner& copy : copies.corners) {
     if (!wanted(patch_of(copy.to))) continue;
     if (same_bits_stay && packed_corner(set, copy.to) == packed_corner(set, copy.from)) continue;
-    moved(copy.to, copy.from, length(corner(copy.to) - corner(copy.from)));
+    const double distance = length(corner(copy.to) - corner(copy.from));
+    if (distance > 0) moved(copy.to, copy.from, distance);
   }
   for (const VertexCopies::Corner& pole : copies.poles) {
     if (!wanted(patch_of(pole.to))) continue;
     if (same_bits_stay && packed_corner(set, pole.to) == packed_corner(set, pole.from)) continue;
     const SideCurve border = curve_of(set, pole.to);
-    for (int k = 0; k <= border.degree(); ++k) moved(pole.to, pole.from, length(border.point(k) - corner(pole.from)));
+    for (int k = 0; k <= border.degree(); ++k)
+      if (const double distance = length(border.point(k) - corner(pole.from)); distance > 0)
+        moved(pole.to, pole.from, distance);
   }
 }
 

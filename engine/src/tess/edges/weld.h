@@ -58,9 +58,10 @@ struct WeldRules {
   /// Whether borders must also be eight times as long as they are apart, and only edges with a single border are joined:
   /// strips thinner than the reach stay between their neighbours.
   bool is_relative = false;
-  /// Also all borders of an edge take the points of its first one, and all corners that meet there those of one. Their
-  /// packed control points are the same bits, but vertices made from doubles may differ.
-  bool every_edge = false;
+  /// `[patch]`: 1 if its vertices come from double control points; empty if no patch's do. These give their points to
+  /// all other borders of their edges, and to all other corners that meet there: the packed control points are the same
+  /// bits, but such vertices may differ.
+  std::span<const std::uint8_t> f64_patches = {};
 };
 
 /// Welds borders.
@@ -70,15 +71,17 @@ struct WeldRules {
 ///   Joined edges get one number in `edges`, and their borders take the points of that which comes_before() all others.
 /// - Borders made points are removed from `edges`.
 /// - Corners that meet at any of these edges become one, that with the least coordinates.
+/// - Borders and corners whose vertices come from doubles come before all others, so that these are moved to them.
 ///
-/// The choice of borders to join, and of the one that moves, depends on their control points alone: not on others that
-/// are farther away, nor on the order of patches. The set must have float Bernstein blocks. `shapes` and `roundings`
+/// The choice of borders to join, and of the one that moves, depends on their control points and on WeldRules alone: not
+/// on others that are farther away, nor on the order of patches. The set must have float Bernstein blocks. `shapes` and `roundings`
 /// (of vertices) are those of its patches. Returns nothing to copy, and no shapes, if nothing is welded.
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   const WeldRules& rules, SharedEdges& edges);
 
 /// Raises `displacements` of the `wanted` patches to how far their vertices are moved at most, including rounding, in
-/// the set as it is now. `same_bits_stay`: a copy from a border of the same bits moves nothing. Allocates nothing.
+/// the set as it is now. A copy between the same control points in double moves nothing: its rounding is no more than
+/// the patch's own. `same_bits_stay`: nor does a copy from a border of the same packed bits. Allocates nothing.
 void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies, std::span<const double> roundings,
                            FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements,
                            bool same_bits_stay = false);

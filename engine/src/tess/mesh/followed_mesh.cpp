@@ -51,7 +51,7 @@ Status ProvenMesh::start(PatchSet& set, const PatchEdits& edits, const MeshViews
 Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution) {
   Result<PlannerOptions> planned = planner_options(options_, set);
   if (!planned) return planned.status();
-  planned->f64 = plan_.is_f64();
+  planned->f64_patches.assign(plan_.f64_patches().begin(), plan_.f64_patches().end());
   Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), *planned, {.cancel = execution.cancel});
   if (!planner) return planner.status();
   update_ = std::make_unique<PlanUpdate>(*std::move(planner), of(impl_of(set)));
@@ -135,9 +135,9 @@ std::size_t ProvenMesh::replace(ProvenMesh& next) {
 
 std::size_t ProvenMesh::changed_patches(const ProvenMesh& other) const {
   const std::size_t patches = plan_.patch_count();
-  if (plan_.is_f64() != other.plan_.is_f64()) return patches;
   std::vector<std::uint8_t> changed(patches, 0);
-  for (std::size_t k = 0; k < patches; ++k) changed[k] = !(plan_.division(k) == other.plan_.division(k));
+  for (std::size_t k = 0; k < patches; ++k)
+    changed[k] = !(plan_.division(k) == other.plan_.division(k)) || plan_.is_f64(k) != other.plan_.is_f64(k);
   const auto compare = [&](const auto& ours, const auto& theirs) {
     if (ours == theirs) return;
     for (const auto* copies : {&ours, &theirs})

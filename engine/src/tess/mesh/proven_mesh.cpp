@@ -1,5 +1,6 @@
 #include "tess/mesh/proven_mesh.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -28,6 +29,7 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
                         const TessellationOptions& options) {
   if (set.cut_count() > 0) return refusal;  // to try is to cut patches into millions of cells
   planned.f64_positions = true;
+  planned.f64_patches.assign(set.patch_count(), 1);
   const Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), planned, {});
   if (!planner) return planner.status();
   const bool keeps = !planner->is_rough(tolerance) && planner->plan(tolerance, options.max_triangles, {});
@@ -59,8 +61,10 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     return found.status();
   };
   Status found = find_smallest();
-  if (!planned->f64 && planner->needs_f64(tolerance)) {
-    planned->f64 = true;
+  if (!planned->f64_positions) planned->f64_patches = planner->patches_that_need_f64(tolerance);
+  if (!planned->f64_positions && !planned->f64_patches.empty()) {
+    // Doubles may keep a smaller tolerance than the one found, and other patches may need doubles for it.
+    if (options.smallest) std::ranges::fill(planned->f64_patches, 1);
     planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
     if (!planner) return planner.status();
     found = find_smallest();

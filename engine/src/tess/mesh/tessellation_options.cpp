@@ -65,7 +65,8 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
   planner.keeps_bounds = options.smallest;
-  planner.f64 = planner.f64_positions = options.precision == Precision::double_precision;
+  planner.f64_positions = options.precision == Precision::double_precision;
+  if (planner.f64_positions) planner.f64_patches.assign(set.patch_count(), 1);
   if (!options.pixels) return planner;
   Result<Camera> camera = Camera::make(options.pixels->view);
   if (!camera) return camera.status();

@@ -90,11 +90,10 @@ void CertifiedPlanner::bound_block(std::size_t block) {
 
 double CertifiedPlanner::own_rounding(const BlockGroup& group, PatchSet::Slot slot) const {
   const std::optional<double> size = chords_.size(slot.block, slot.lane);
-  const auto patch = [&]() -> const BezierPatch& {
-    return set_->patches[set_->lane_patches[slot.block * std::size_t{PatchSet::lanes} + slot.lane]];
-  };
+  const std::size_t index = set_->lane_patches[slot.block * std::size_t{PatchSet::lanes} + slot.lane];
+  const auto patch = [&]() -> const BezierPatch& { return set_->patches[index]; };
   const double vertices = options_.f64_positions ? f64_position_rounding(patch(), set_->origin)
-                          : options_.f64         ? f64_vertex_rounding(patch(), set_->origin)
+                          : is_f64(index)        ? f64_vertex_rounding(patch(), set_->origin)
                           : size ? vertex_rounding(group.degree_u, group.degree_v, group.rational, *size)
                                  : vertex_rounding(patch(), set_->origin);
   return vertices + chords_.slack(slot.block, slot.lane);
@@ -102,13 +101,13 @@ double CertifiedPlanner::own_rounding(const BlockGroup& group, PatchSet::Slot sl
 
 void CertifiedPlanner::find_weld() {
   WeldRules rules = options_.weld;
-  rules.every_edge = options_.f64;
+  rules.f64_patches = options_.f64_patches;
   if (options_.f64_positions) {
     // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
     rules.reach = std::max(rules.reach, 0x1p-50 * std::max(max_abs(set_->box().lower), max_abs(set_->box().upper)));
     edges_ = parted_by_doubles(*set_, edges_);
   }
-  if (!(rules.reach > 0) && !rules.every_edge) return;
+  if (!(rules.reach > 0) && rules.f64_patches.empty()) return;
   weld_ = weld_borders(*set_, own_shapes(), roundings_, rules, edges_);
   for (std::size_t k = 0; k < weld_.displacements.size(); ++k)
     roundings_[k] = std::max(roundings_[k], weld_.displacements[k]);
@@ -364,7 +363,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
 
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
   CertifiedPlan plan;
-  plan.is_f64_ = options_.f64;
+  plan.f64_patches_ = options_.f64_patches;
   plan.has_f64_positions_ = options_.f64_positions;
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
   if (set_->trims) {

@@ -65,10 +65,11 @@ class CertifiedPlan {
   std::span<const float> bounds() const { return bounds_; }
   std::span<const float> angles() const { return angles_; }  ///< empty if no angle was set
   std::span<const float> pixels() const { return pixels_; }  ///< empty if no pixels were set
-  /// Whether vertices come from the set's double control points: see F64Points. Borders that are one edge then have the
-  /// same positions only after VertexCopies are made.
-  bool is_f64() const { return is_f64_; }
-  /// Whether the mesh has positions in double; implies is_f64().
+  /// `[patch]`: 1 if its vertices come from the set's double control points, see F64Points; empty if no patch's do.
+  /// Borders of one edge then have the same positions only after VertexCopies are made.
+  std::span<const std::uint8_t> f64_patches() const { return f64_patches_; }
+  bool is_f64(std::size_t patch) const { return !f64_patches_.empty() && f64_patches_[patch]; }
+  /// Whether the mesh has positions in double; implies is_f64() of all patches.
   bool has_f64_positions() const { return has_f64_positions_; }
 
   /// Stores vertices that are copies of each other once. Ring vertices that a patch owns follow its inner points.
@@ -106,7 +107,8 @@ class CertifiedPlan {
   };
   std::unique_ptr<Trimmed> trimmed_;  ///< null if no patch is cut
   std::uint32_t open_edges_ = 0;
-  bool is_f64_ = false, has_f64_positions_ = false;
+  bool has_f64_positions_ = false;
+  std::vector<std::uint8_t> f64_patches_;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
   std::vector<std::uint32_t> corner_sources_;  ///< `[corner]`: itself if it owns its vertex; empty if nothing is shared
   std::vector<BorderSource> border_sources_;   ///< `[border]`
@@ -117,8 +119,9 @@ constexpr bool is_backward(std::uint32_t border) { return is_backward(all_sides[
 /// The limits to keep besides a distance, and how borders are joined.
 struct PlannerOptions {
   WeldRules weld = {};
-  bool f64 = false;             ///< vertices come from double control points
-  bool f64_positions = false;   ///< the mesh has positions in double; needs f64
+  /// `[patch]`: 1 if its vertices come from double control points; empty if no patch's do.
+  std::vector<std::uint8_t> f64_patches = {};
+  bool f64_positions = false;   ///< the mesh has positions in double; needs all f64_patches
   std::optional<double> angle;  ///< radians, above 0, at most pi / 2
   int angle_rate = 64;          ///< the least rate where the angle has no bound
   std::optional<Camera> camera;
@@ -145,9 +148,9 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
   const SharedEdges& edges() const { return edges_; }  ///< after welding
-  /// Whether the rounding of vertices that come from float control points takes more than an eighth of the tolerance,
-  /// or all that pixels leave.
-  bool needs_f64(double tolerance) const;
+  /// Returns PlannerOptions::f64_patches of the patches where the rounding of vertices from float control points takes
+  /// more than an eighth of the tolerance, or all that pixels leave.
+  std::vector<std::uint8_t> patches_that_need_f64(double tolerance) const;
   /// Whether the rounding of vertices leaves less than half of the tolerance.
   bool is_rough(double tolerance) const;
   /// Returns about the smallest tolerance that the vertices keep with max_triangles, to two digits; none if it is far
@@ -182,6 +185,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
 
   CertifiedPlanner(const PatchSet::Impl& set, const PlannerOptions& options)
       : set_(&set), options_(options), fit_error_(set.fit_error.distance), chords_(set, options.f64_positions) {}
+  bool is_f64(std::size_t patch) const { return !options_.f64_patches.empty() && options_.f64_patches[patch]; }
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   /// The demands on a plan.
   struct Request {
@@ -202,6 +206,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   void bound_block(std::size_t block);
   /// Returns the rounding of a patch's vertices before welding, once its block is bounded.
   double own_rounding(const BlockGroup& group, PatchSet::Slot slot) const;
+  /// Adds the whole patches that give vertices to cut ones that need doubles.
+  void add_givers_of_cut(std::vector<std::uint8_t> & patches) const;
   /// Finds the borders to weld, and adds the displacements to the roundings.
   void find_weld();
   Status bound_turning_and_picture(const Execution& execution);

@@ -33,15 +33,36 @@ double rounded_up_shortly(double x) {
 
 }  // namespace
 
-bool CertifiedPlanner::needs_f64(double tolerance) const {
-  constexpr double max_share = 1.0 / 8;
-  if (largest_rounding_ > max_share * tolerance) return true;
-  for (std::size_t k = 0; k < pictures_.size(); ++k) {
-    const double given = roundings_[k] + fit_error_;
-    if (!(given < pictures_[k].distance())) return true;
-    if (pictures_[k].projected() && !(pictures_[k].moved_pixels() < options_.pixels)) return true;
+std::vector<std::uint8_t> CertifiedPlanner::patches_that_need_f64(double tolerance) const {
+  const double most = tolerance / 8;
+  const bool is_any_rough = largest_rounding_ > most;
+  if (!is_any_rough && pictures_.empty()) return {};
+  const auto is_rough_in_picture = [&](std::size_t k) {
+    const ScreenSpaceBound& picture = pictures_[k];
+    return !(roundings_[k] + fit_error_ < picture.distance()) ||
+           (picture.projected() && !(picture.moved_pixels() < options_.pixels));
+  };
+  std::vector<std::uint8_t> patches(shapes_.size(), 0);
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    const PatchSet::Slot slot = set_->slots[k];
+    patches[k] = (is_any_rough && own_rounding(set_->group_of_block(slot.block), slot) > most) ||
+                 (!pictures_.empty() && is_rough_in_picture(k));
   }
-  return false;
+  if (std::ranges::find(patches, 1) == patches.end()) return {};
+  if (!pictures_.empty() && set_->trims) add_givers_of_cut(patches);
+  return patches;
+}
+
+void CertifiedPlanner::add_givers_of_cut(std::vector<std::uint8_t>& patches) const {
+  std::vector<std::uint8_t> edges(edges_.count(), 0);
+  const auto for_sides = [&](std::size_t patch, auto visit) {
+    for (const Side side : all_sides)
+      if (const std::uint32_t edge = edges_.edge(patch, side); edge != SharedEdges::none) visit(edges[edge]);
+  };
+  for (std::size_t k = 0; k < patches.size(); ++k)
+    if (is_cut(k) && patches[k]) for_sides(k, [](std::uint8_t& edge) { edge = 1; });
+  for (std::size_t k = 0; k < patches.size(); ++k)
+    if (!is_cut(k)) for_sides(k, [&](std::uint8_t edge) { patches[k] |= edge; });
 }
 
 bool CertifiedPlanner::is_rough(double tolerance) const {

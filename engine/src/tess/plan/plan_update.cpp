@@ -78,8 +78,7 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
 }
 
 void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
-  // Beyond this share of the tolerance, vertices must come from doubles: see CertifiedPlanner::needs_f64().
-  const double most = planner_.options_.f64 ? std::numeric_limits<double>::infinity() : of.tolerance / 8;
+  const double most = of.tolerance / 8;  // see CertifiedPlanner::patches_that_need_f64()
   const BlockGroup& group = of.set.group_of_block(block);
   planner_.chords_.bound(of.set, block, touched_.bits[block]);
   for (std::uint32_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
@@ -91,7 +90,7 @@ void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
     const EdgeMask collapsed = of.set.collapsed[patch];
     const bool keeps_shape = collapsed.any() ? PatchShape::of(of.set.patches[patch], collapsed) == shape
                                              : !shape.collapsed.any() && !shape.is_curve;
-    if (!keeps_shape || !(rounding <= most)) is_unknown_ = true;
+    if (!keeps_shape || !(rounding <= most || planner_.is_f64(patch))) is_unknown_ = true;
   }
 }
 
@@ -203,7 +202,7 @@ void PlanUpdate::take_bounds(CertifiedPlan& plan) const {
 
 CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
   CertifiedPlan plan;
-  plan.is_f64_ = of.plan.is_f64_;
+  plan.f64_patches_ = of.plan.f64_patches_;
   plan.has_f64_positions_ = of.plan.has_f64_positions_;
   plan.segments_ = of.plan.segments_;
   plan.bounds_ = of.plan.bounds_;

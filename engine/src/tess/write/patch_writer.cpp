@@ -32,8 +32,9 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && !plan.is_f64() && plan.cuts().empty() &&
-               out.quads.empty() && is_packed(out.position) && (out.normal.empty() || is_packed(out.normal));
+  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && plan.f64_patches().empty() &&
+               plan.cuts().empty() && out.quads.empty() && is_packed(out.position) &&
+               (out.normal.empty() || is_packed(out.normal));
 }
 
 void PatchWriter::write(std::size_t begin, std::size_t end) const {
@@ -73,7 +74,7 @@ void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vert
   set_records(vertices.job.normal, out_.normal, first);
   vertices.job.writable = static_cast<int>(std::min<std::size_t>(end - first, std::numeric_limits<int>::max()));
   kernels_.mesh_vertices(vertices.job);
-  if (plan_.is_f64()) write_f64(k);
+  if (plan_.is_f64(k)) write_f64(k);
 }
 
 void PatchWriter::write_f64(std::size_t k) const {

@@ -47,7 +47,7 @@ void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
       write_ring(k, part, vertices);
     }
   }
-  if (plan_.is_f64()) write_f64(k);
+  if (plan_.is_f64(k)) write_f64(k);
 }
 
 void PatchWriter::write_ring(std::size_t k, const Division& part, VertexJob& vertices) const {
