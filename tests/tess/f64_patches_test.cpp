@@ -10,7 +10,7 @@ namespace tessera::test {
 namespace {
 
 /// A tolerance for which bicubic patches beyond about 20 from the origin need doubles.
-constexpr double tolerance = 2e-4;
+constexpr double tolerance = 1e-4;
 
 PatchSet set_at_zero(const std::vector<BezierPatch>& patches) {
   return good(PatchSet::make(patches, {.origin = Vec3{}}));

@@ -52,11 +52,11 @@ TEST(FarParts, KeepATolerance) {
 TEST(FarParts, ALongCylinderKeepsATolerance) {
   const PatchSet set = set_of(cylinder(1, 1000));
   EXPECT_LE(good(Tessellation::make(set, {.tolerance = 0.001})).bound(), 0.001 * (1 + 1e-6));
-  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.005}));
+  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.0025}));
   EXPECT_TRUE(is_f64(plan));
   const Mesh mesh = mesh_of(set, plan);
   expect_bounds(set, mesh, plan.bounds());
-  const CrackCount cracks = good(count_cracks(set, 0.005 / set.box().diagonal(), std::uint64_t{1} << 30));
+  const CrackCount cracks = good(count_cracks(set, 0.0025 / set.box().diagonal(), std::uint64_t{1} << 30));
   EXPECT_TRUE(cracks.good()) << cracks.cracks;
 }
 

@@ -184,7 +184,7 @@ struct MeshChange {
 ///   are moved to
 /// - with pixels: whole patches beside cut ones, see below
 ///
-/// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than an eighth of the tolerance,
+/// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than a quarter of the tolerance,
 /// or all that pixels leave, as for parts far from the set's origin with a small tolerance, then the vertices of the
 /// patch are sums of doubles instead, from the set's double control points. These are rounded once to float: off by half
 /// a unit in the last place of a position relative to the set's origin. They take several times as long, and a mesh that

@@ -148,8 +148,11 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
   const SharedEdges& edges() const { return edges_; }  ///< after welding
+  /// The share of the tolerance that the rounding of vertices from float control points may take. It costs up to a third
+  /// more triangles, and doubles take five times as long.
+  static constexpr double max_rounding = 0.25;
   /// Returns PlannerOptions::f64_patches of the patches where the rounding of vertices from float control points takes
-  /// more than an eighth of the tolerance, or all that pixels leave.
+  /// more than max_rounding, or all that pixels leave.
   std::vector<std::uint8_t> patches_that_need_f64(double tolerance) const;
   /// Whether the rounding of vertices leaves less than half of the tolerance.
   bool is_rough(double tolerance) const;

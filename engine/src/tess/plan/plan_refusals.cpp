@@ -34,7 +34,7 @@ double rounded_up_shortly(double x) {
 }  // namespace
 
 std::vector<std::uint8_t> CertifiedPlanner::patches_that_need_f64(double tolerance) const {
-  const double most = tolerance / 8;
+  const double most = max_rounding * tolerance;
   const bool is_any_rough = largest_rounding_ > most;
   if (!is_any_rough && pictures_.empty()) return {};
   const auto is_rough_in_picture = [&](std::size_t k) {

@@ -78,7 +78,7 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
 }
 
 void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
-  const double most = of.tolerance / 8;  // see CertifiedPlanner::patches_that_need_f64()
+  const double most = CertifiedPlanner::max_rounding * of.tolerance;  // beyond it other patches need doubles
   const BlockGroup& group = of.set.group_of_block(block);
   planner_.chords_.bound(of.set, block, touched_.bits[block]);
   for (std::uint32_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
