@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 
 #include "support/triangle_distance.h"
 #include "tess/proven_mesh_of.h"
@@ -147,6 +148,53 @@ TEST(TrimmedFace, OfACylinderKeepsItsBound) {
   const std::vector<TrimLoop> loops{rectangle(0, 4, 0, 3), circle({1.5, 1.5}, 1)};
   for (const double tolerance : {1e-1, 1e-2, 1e-3})
     expect_good(cylinder(), loops, outside_of({{{1.5, 1.5}, 1}}), tolerance, 0);
+}
+
+/// A circle of equal arcs, each a curve of its own.
+TrimLoop arcs(const ParameterPoint& centre, double radius, int count) {
+  const double step = 2 * std::numbers::pi / count, middle = std::cos(step / 2);
+  const auto at = [&](double angle, double r) {
+    return Vec3{centre.u + r * std::cos(angle), centre.v + r * std::sin(angle), 0};
+  };
+  TrimLoop loop;
+  for (int k = 0; k < count; ++k) {
+    const std::vector<Vec3> points{at(k * step, radius), at((k + 0.5) * step, radius / middle),
+                                   at((k + 1) % count * step, radius)};
+    loop.curves.push_back(value_of(Curve::bezier(points, std::vector<double>{1, middle, 1})));
+  }
+  return loop;
+}
+
+TEST(TrimmedFace, OfLoopsInManyPiecesHasNoMoreTriangles) {
+  Face many(plane(), {arcs({2, 1.5}, 1, 400)}), few(plane(), {circle({2, 1.5}, 1)});
+  for (const double tolerance : {1e-1, 1e-2, 1e-3})
+    EXPECT_LE(many.mesh(tolerance).triangle_count(), few.mesh(tolerance).triangle_count()) << tolerance;
+  for (const double tolerance : {0.3, 1e-2, 1e-4})
+    expect_good(plane(), {arcs({2, 1.5}, 1, 400)}, outside_of({{{2, 1.5}, 1}}, true), tolerance, 1);
+  expect_good(wavy(), {arcs({2, 1}, 1.3, 400)}, outside_of({{{2, 1}, 1.3}}, true), 1e-2, 1);
+}
+
+// Faces of equal loops share what is made of them, unless their surfaces or the kept sides differ.
+TEST(TrimmedFace, KeepsBesideOthersOfItsLoopsWhatItKeepsAlone) {
+  const TrimLoop disc = circle({1, 1}, 0.7), hole = circle({1, 1}, 0.7, true);
+  const Affine moved = Affine::translated({0, 0, 5});
+  const std::vector<ModelSurface> faces{{"a", plane(), {}, std::vector{disc}},
+                                        {"b", plane(), {}, std::vector{hole}},
+                                        {"c", plane(), moved, std::vector{disc}},
+                                        {"d", wavy(), {}, std::vector{disc}},
+                                        {"e", plane(), {}, std::vector{hole}}};
+  const auto triangles = [](const PatchSet& set) {
+    return value_of(Tessellation::make(set, {.tolerance = 1e-2})).capacity().triangles;
+  };
+  std::size_t patches = 0, cut = 0, sum = 0;
+  for (const ModelSurface& face : faces) {
+    const PatchSet alone = value_of(make_patch_set(Model{"", {face}}));
+    patches += alone.patch_count(), cut += alone.cut_count(), sum += triangles(alone);
+  }
+  const PatchSet all = value_of(make_patch_set(Model{"", faces}));
+  EXPECT_EQ(all.patch_count(), patches);
+  EXPECT_EQ(all.cut_count(), cut);
+  EXPECT_EQ(triangles(all), sum);
 }
 
 // Whole patches take the same way as those of a face without loops: the same bytes.

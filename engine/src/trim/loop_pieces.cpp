@@ -70,7 +70,10 @@ class LoopBuilder {
 
   Result<LoopPieces> build() {
     std::size_t spans = 0;
-    for (const Curve& curve : loop_.curves) spans += curve.points().size() / static_cast<std::size_t>(curve.degree());
+    for (const Curve& curve : loop_.curves) {
+      const auto degree = static_cast<std::size_t>(curve.degree());
+      spans += is_bezier(curve) ? curve.points().size() / degree : curve.points().size() - degree;
+    }
     made_.pieces.reserve(spans);
     for (std::size_t k = 0; k < loop_.curves.size(); ++k)
       if (Status status = append_curve(k); !status.ok()) return status;

@@ -98,8 +98,10 @@ std::vector<double> split(std::vector<double>& c, double t) {
   return upper;
 }
 
-double value_at(std::vector<double> c, double t) {
-  for (std::size_t last = c.size() - 1; last > 0; --last)
+double value_at(const std::vector<double>& coefficients, double t) {
+  std::array<double, 2 * max_degree> c;
+  std::ranges::copy(coefficients, c.begin());
+  for (std::size_t last = coefficients.size() - 1; last > 0; --last)
     for (std::size_t i = 0; i < last; ++i) c[i] = (1 - t) * c[i] + t * c[i + 1];
   return c[0];
 }

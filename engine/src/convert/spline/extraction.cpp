@@ -14,7 +14,7 @@ using Blossom = std::array<long double, max_degree + 1>;
 /// and Surfaces for CAGD, 5th ed., sec. 8.6). Every step is convex there.
 void append_row(Extraction& extraction, const KnotLine& line, std::size_t span, double a, double b, std::size_t i) {
   const std::size_t p = static_cast<std::size_t>(line.degree);
-  Blossom arguments{}, weights{};
+  Blossom arguments{}, weights;
   std::fill_n(arguments.begin(), p - i, a);
   std::fill_n(arguments.begin() + static_cast<std::ptrdiff_t>(p - i), i, b);
   blossom_weights(line.degree, line.knots, span, arguments.data(), weights.data());
