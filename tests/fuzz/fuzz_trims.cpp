@@ -72,7 +72,9 @@ void compare(const TrimRegion& a, const TrimRegion& b, const Domain& d) {
 }
 
 void use(const ModelSurface& surface) {
-  const std::vector<TrimLoop>& loops = surface.trims;
+  const Result<Shared<std::vector<TrimLoop>>> trims = grid_trims(surface);
+  if (!trims) return require(!trims.status().message().empty());
+  const std::vector<TrimLoop>& loops = **trims;
   const Domain d = domain(surface.surface);
   const std::array breaks_u{d.u0, d.u_at(0.25), d.u1}, breaks_v{d.v0, d.v_at(0.5), d.v1};
   for (int periodic = 0; periodic < 4; ++periodic) {

@@ -81,19 +81,19 @@ TEST(WriteModelTrims, AreSaidToBeLeftOutOfBpt) {
                                                       "surface 1 (rim): 1 trim is not written: .bpt has none"}));
 }
 
-TEST(WriteModelTrims, AreSaidToBeLeftOutOfQuadrics) {
+/// A quadric is written as its patches, and its loops in their parameters.
+TEST(WriteModelTrims, FollowThePatchesOfQuadrics) {
   const ScratchFolder folder;
   Model model = value_of(read_model(TESSERA_SOURCE_DIR "/tools/models/quadric_elliptic_cylinder.json"));
   ASSERT_TRUE(std::holds_alternative<QuadricPiece>(model.surfaces.at(0).surface));
-  model.surfaces[0].name = "side";
   model.surfaces[0].trims = loops();
+  const Shared<std::vector<TrimLoop>> followed = value_of(grid_trims(model.surfaces[0]));
+  EXPECT_NE(*followed, loops());
   for (const char* name : {"a.json", "a.obj"}) {
     WrittenModel facts;
     const Model read = rewritten(model, folder / name, &facts);
-    EXPECT_EQ(facts.warnings,
-              (std::vector<std::string>{
-                  "surface 0 (side): 2 trims are not written: their parameters are not those of its patches"}));
-    EXPECT_TRUE(read.surfaces[0].trims->empty());
+    EXPECT_TRUE(facts.warnings.empty());
+    EXPECT_EQ(read.surfaces[0].trims, followed) << name;
   }
 }
 

@@ -16,10 +16,16 @@ std::string_view name_of(LoopFault fault) {
   return names[static_cast<std::size_t>(fault)];
 }
 
+Result<TrimRegion> region_of(const ModelSurface& surface, const PatchGrid& grid) {
+  const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
+  if (!loops) return loops.status();
+  return TrimRegion::make(**loops, grid);
+}
+
 void add_surface(std::size_t k, const ModelSurface& surface, const PatchGrid& grid, TrimFacts& facts) {
   ++facts.trimmed;
   facts.loops += surface.trims->size();
-  const Result<TrimRegion> region = TrimRegion::make(*surface.trims, grid);
+  const Result<TrimRegion> region = region_of(surface, grid);
   if (!region) {
     const Status& status = region.status();
     SurfaceRemark remark;

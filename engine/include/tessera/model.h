@@ -25,7 +25,7 @@ struct ModelSurface {
   Shared<std::string> name;                  ///< may be empty
   Surface surface;                           ///< in its own space
   Shared<Affine> placement = {};             ///< from its own space to the model's
-  Shared<std::vector<TrimLoop>> trims = {};  ///< what is kept of it; none: all
+  Shared<std::vector<TrimLoop>> trims = {};  ///< what is kept of it, in its own parameters; none: all
 };
 
 /// The surfaces of a file, or those that a program makes.
@@ -47,11 +47,16 @@ Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v)
 /// kind, non_finite (the placement), invalid_argument (a tolerance below what rounding leaves where the surface is
 /// placed).
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options = {});
+/// Returns the surface's loops in the parameters of to_bezier()'s grid, as TrimRegion::make() takes them: the loops
+/// themselves for all kinds but quadrics, see grid_parameters(). Loops of a quadric become cubics, off by at most 1e-9
+/// of the ranges, as sampled; straight lines along a parameter remain so. Errors: unsupported (a loop of a quadric runs
+/// over more than 64 times its ranges; index = the loop), non_finite (a loop that overflows there).
+Result<Shared<std::vector<TrimLoop>>> grid_trims(const ModelSurface& surface);
 
 /// Makes one set of the patches of all surfaces. source(k).surface is the index into model.surfaces, and
 /// source(k).domain the patch's rectangle of the surface's parameters. PatchSet::fit_error() is the largest of all,
 /// certified if all are. Patches that trimming loops cut away are left out: see PatchSetOptions::trims. A surface whose
-/// loops TrimRegion::make() refuses is kept whole: see PatchSet::trim_faults().
+/// loops grid_trims() or TrimRegion::make() refuses is kept whole: see PatchSet::trim_faults().
 ///
 /// Errors: those of the conversions and of PatchSet::make(), as "surface 3 (rim): ..." (index = the surface);
 /// invalid_argument (loops cut away every patch).

@@ -34,7 +34,7 @@ class TrimRegion {
  public:
   /// Makes the region of a surface's face.
   ///
-  /// - `loops`: in the surface's parameters, at most 1e100 in absolute value.
+  /// - `loops`: in the parameters of the breaks, at most 1e100 in absolute value.
   /// - `breaks_u`, `breaks_v`: borders between patches, as in PatchGrid: at least two, finite, strictly increasing.
   ///
   /// Errors: invalid_argument (breaks, snap), non_finite (breaks; index = the break), unsupported (coordinates beyond
@@ -47,9 +47,9 @@ class TrimRegion {
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const Domain& domain,
                                  const TrimOptions& options = {});
 
-  /// Makes the region of a face whose patches are these, as make_patch_set() of a model does: a parameter is periodic if
-  /// the first and the last line of the grid are the same points, within 1e-9 of its size; ends of curves meet within
-  /// 2^-32 of the domain. Errors: as above.
+  /// Makes the region of a face whose patches are these, as make_patch_set() of a model does: loops are in the grid's
+  /// parameters (see grid_trims()); a parameter is periodic if the first and the last line of the grid are the same
+  /// points, within 1e-9 of its size; ends of curves meet within 2^-32 of the domain. Errors: as above.
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid);
 
   /// Tells on which side of the loops a point lies. Exact: `inside` and `outside` are right for the loops as they were

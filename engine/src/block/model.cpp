@@ -13,6 +13,7 @@
 #include "block/patch_trims.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
+#include "trim/grid_loops.h"
 #include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
@@ -28,23 +29,23 @@ struct FaceTrims {
 /// Finds the trims of faces. Faces of equal loops over equal grids share them, as instances of a part do.
 class FaceTrimsFinder {
  public:
-  /// Returns the trims of the next face, to stay until the next call. `loops` must outlive this object.
-  Result<FaceTrims*> find(const std::vector<TrimLoop>& loops, const PatchGrid& grid) {
+  /// Returns the trims of the next face, to stay until the next call.
+  Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid) {
     const TrimOptions options = TrimRegion::Impl::options_of(grid);
     const auto [first, last] = known_.equal_range(key_of(loops));
     for (auto known = first; known != last; ++known)
       if (known->second.is_for(loops, grid, options)) return &known->second.trims;
     Result<TrimRegion> region =
-        TrimRegion::Impl::make(loops, grid.breaks_u(), grid.breaks_v(), options, TrimRegion::Impl::Use::patches);
+        TrimRegion::Impl::make(*loops, grid.breaks_u(), grid.breaks_v(), options, TrimRegion::Impl::Use::patches);
     if (!region) return region.status();
     FaceTrims trims{*std::move(region), {}};
     if (!trims.region.is_whole()) trims.uses = patch_uses(trims.region);
-    return &known_.emplace(key_of(loops), Known{&loops, options, std::move(trims)})->second.trims;
+    return &known_.emplace(key_of(loops), Known{loops, options, std::move(trims)})->second.trims;
   }
 
  private:
   struct Known {
-    const std::vector<TrimLoop>* loops;
+    Shared<std::vector<TrimLoop>> loops;
     TrimOptions options;
     FaceTrims trims;
 
@@ -192,6 +193,16 @@ Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& optio
   });
 }
 
+Result<Shared<std::vector<TrimLoop>>> grid_trims(const ModelSurface& surface) {
+  return guarded([&]() -> Result<Shared<std::vector<TrimLoop>>> {
+    const auto* const piece = std::get_if<QuadricPiece>(&surface.surface);
+    if (!piece || surface.trims->empty()) return surface.trims;
+    Result<std::vector<TrimLoop>> loops = grid_loops(*surface.trims, *piece);
+    if (!loops) return loops.status();
+    return Shared<std::vector<TrimLoop>>(*std::move(loops));
+  });
+}
+
 namespace {
 
 /// Gathers the patches of a model's surfaces one by one.
@@ -202,11 +213,10 @@ class ModelPatches {
   /// Adds the next surface's patches.
   Status add(PatchGrid grid) {
     const std::size_t k = ends_.size();
-    const std::vector<TrimLoop>& loops = model_.surfaces[k].trims;
-    if (!options_.trims || loops.empty()) {
+    if (!options_.trims || model_.surfaces[k].trims->empty()) {
       all_.add(k, std::move(grid));
     } else {
-      const Result<FaceTrims*> trims = trims_.find(loops, grid);
+      const Result<FaceTrims*> trims = trims_of(model_.surfaces[k], grid);
       if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
       if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
       if (!trims || (*trims)->region.is_whole()) {
@@ -229,6 +239,12 @@ class ModelPatches {
   }
 
  private:
+  Result<FaceTrims*> trims_of(const ModelSurface& surface, const PatchGrid& grid) {
+    const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
+    if (!loops) return loops.status();
+    return trims_.find(*loops, grid);
+  }
+
   const Model& model_;
   const PatchSetOptions& options_;
   Gathered all_;

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "convert/fit/cubic_fit.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -37,18 +40,13 @@ bool is_straight_along_a_parameter(const Geom2d_BSplineCurve& spline) {
   return std::min(du, dv) <= 1e-12 * std::max(du, dv);
 }
 
-struct Sample {
-  double t = 0;
-  Vec3 point, slope;
-};
-
 /// One knot interval of the spline, in our parameters.
 class MappedSpan {
  public:
   MappedSpan(const Geom2d_BSplineCurve& spline, int span, const Reparametrization& parameters)
       : spline_(spline), span_(span), parameters_(parameters) {}
 
-  Sample at(double t) const {
+  CurveSample at(double t) const {
     gp_Pnt2d p;
     gp_Vec2d d;
     spline_.LocalD1(t, span_, span_ + 1, p, d);
@@ -64,53 +62,14 @@ class MappedSpan {
   const Reparametrization& parameters_;
 };
 
-/// Cubics in Bezier form that share their ends.
-struct Cubics {
-  std::vector<Vec3> points;
-  std::vector<double> knots;
-
-  void begin(const Sample& a) {
-    points = {a.point};
-    knots.assign(4, a.t);
-  }
-  void append(const std::array<Vec3, 4>& bezier, double end) {
-    points.insert(points.end(), bezier.begin() + 1, bezier.end());
-    knots.insert(knots.end(), 3, end);
-  }
-  Result<Curve> curve() {
-    knots.push_back(knots.back());
-    return Curve::b_spline(3, points, knots);
-  }
-};
-
-/// Interpolates position and slope at both ends; halves the interval until the points between fit.
-void append_hermite(const MappedSpan& span, const Sample& a, const Sample& b, double tolerance, int depth,
-                    Cubics& out) {
-  const double third = (b.t - a.t) / 3;
-  const std::array<Vec3, 4> c{a.point, a.point + third * a.slope, b.point - third * b.slope, b.point};
-  const auto cubic = [&](double x) {
-    const double y = 1 - x;
-    return y * y * y * c[0] + 3 * x * y * y * c[1] + 3 * x * x * y * c[2] + x * x * x * c[3];
-  };
-  const Sample middle = span.at(0.5 * (a.t + b.t));
-  bool fits = length(cubic(0.5) - middle.point) <= tolerance;
-  for (const double x : {0.25, 0.75})
-    fits = fits && length(cubic(x) - span.at(a.t + x * (b.t - a.t)).point) <= tolerance;
-  constexpr int deepest = 12;
-  if (fits || depth == deepest) return out.append(c, b.t);
-  append_hermite(span, a, middle, tolerance, depth + 1, out);
-  append_hermite(span, middle, b, tolerance, depth + 1, out);
-}
-
 Result<Curve> refitted(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters, double tolerance) {
-  Cubics cubics;
+  CubicFit fit;
+  const auto is_near = [&](const Vec3& a, const Vec3& b) { return length(a - b) <= tolerance; };
   for (int k = spline.FirstUKnotIndex(); k < spline.LastUKnotIndex(); ++k) {
     const MappedSpan span(spline, k, parameters);
-    const Sample a = span.at(spline.Knot(k)), b = span.at(spline.Knot(k + 1));
-    if (cubics.points.empty()) cubics.begin(a);
-    append_hermite(span, a, b, tolerance, 0, cubics);
+    fit.follow([&](double t) { return span.at(t); }, is_near, spline.Knot(k), spline.Knot(k + 1));
   }
-  return cubics.curve();
+  return std::move(fit).curve();
 }
 
 }  // namespace

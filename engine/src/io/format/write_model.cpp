@@ -15,6 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The patches of a surface, and loops in their parameters.
+struct Converted {
+  PatchGrid grid;
+  Shared<std::vector<TrimLoop>> trims;
+};
+
 void add(WrittenModel& facts, const PatchGrid& grid) {
   facts.patches += grid.patches().size();
   facts.fit_error.distance = std::max(facts.fit_error.distance, grid.fit_error().distance);
@@ -27,21 +33,19 @@ Result<WrittenModel> write(const Model& model, const fs::path& path, const FitOp
   if (model.surfaces.empty())
     return Status(StatusCode::invalid_argument, path.string() + ": the model has no surfaces");
   WrittenModel facts;
-  std::vector<PatchGrid> grids;
-  grids.reserve(model.surfaces.size());
+  std::vector<Converted> all;
+  all.reserve(model.surfaces.size());
   std::vector<WrittenSurface> surfaces;
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
     const ModelSurface& surface = model.surfaces[k];
-    Result<PatchGrid> converted = to_bezier(surface, fit);
-    if (!converted) return in_surface(model, k, converted.status());
-    const PatchGrid& grid = grids.emplace_back(*std::move(converted));
-    add(facts, grid);
-    WrittenSurface written{*surface.name, grid.breaks_u(), grid.breaks_v(), grid.patches(), *surface.trims};
-    if (!written.trims.empty() && std::holds_alternative<QuadricPiece>(surface.surface)) {
-      facts.warnings.push_back(trims_left_out(k, written, "their parameters are not those of its patches"));
-      written.trims = {};
-    }
-    surfaces.push_back(written);
+    Result<PatchGrid> grid = to_bezier(surface, fit);
+    if (!grid) return in_surface(model, k, grid.status());
+    Result<Shared<std::vector<TrimLoop>>> trims = grid_trims(surface);
+    if (!trims) return in_surface(model, k, trims.status());
+    const Converted& converted = all.emplace_back(Converted{*std::move(grid), *std::move(trims)});
+    add(facts, converted.grid);
+    surfaces.push_back({*surface.name, converted.grid.breaks_u(), converted.grid.breaks_v(), converted.grid.patches(),
+                        *converted.trims});
   }
   if (Status status = writer->write(surfaces, out, facts.warnings); !status.ok()) {
     const Status named = in_surface(model, static_cast<std::size_t>(status.index()), status);

@@ -141,34 +141,17 @@ SurfaceJet evaluate_jet(const QuadricPiece& piece, double u, double v) {
   return {quadric.frame().origin + vector(0, 0), vector(1, 0), vector(0, 1), vector(2, 0), vector(1, 1), vector(0, 2)};
 }
 
-namespace {
-
-double canonical(Profile profile, double from, double to, double t) {
-  const SegmentedRange range(profile, from, to);
-  const int k = range.segment(t);
-  const double a = range.begin(k), b = range.begin(k + 1);
-  return profile_parameter(profile, a, b, t == b ? 1 : (t - a) / (b - a));
-}
-
-double in_grid(Profile profile, double from, double to, double t) {
-  const SegmentedRange range(profile, from, to);
-  const int k = range.segment(t);
-  const double a = range.begin(k), b = range.begin(k + 1), s = profile_fraction(profile, a, b, t);
-  return s == 1 ? b : a + s * (b - a);
-}
-
-}  // namespace
-
 QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, double v) {
   const Profiles profile = profiles(piece.quadric().kind());
   const Domain& r = piece.range();
-  return {canonical(profile.u, r.u0, r.u1, u), canonical(profile.v, r.v0, r.v1, v), piece.sheet()};
+  return {canonical_parameter(profile.u, r.u0, r.u1, u), canonical_parameter(profile.v, r.v0, r.v1, v), piece.sheet()};
 }
 
 QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v) {
   const Profiles profile = profiles(piece.quadric().kind());
   const Domain& r = piece.range();
-  return {in_grid(profile.u, r.u0, r.u1, u), in_grid(profile.v, r.v0, r.v1, v), piece.sheet()};
+  return {grid_parameter(profile.u, r.u0, r.u1, u).value, grid_parameter(profile.v, r.v0, r.v1, v).value,
+          piece.sheet()};
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -113,10 +113,9 @@ SegmentedRange::SegmentedRange(Profile profile, double from, double to) : from_(
   count = std::max(1, static_cast<int>(std::ceil((to - from) / widest)));
 }
 
-int SegmentedRange::segment(double t) const {
-  int k = 0;
-  while (k + 1 < count && t >= begin(k + 1)) ++k;
-  return k;
+double SegmentedRange::segment(double t) const {
+  const double k = std::floor((t - from_) / (to_ - from_) * count);
+  return t < begin(k) ? k - 1 : t >= begin(k + 1) ? k + 1 : k;
 }
 
 // A standard conic segment about m with half-width h is the projection of the line from tan(h/2) (tanh for hyperbolas):
@@ -135,6 +134,23 @@ double profile_fraction(Profile profile, double from, double to, double t) {
   if (profile == Profile::circle) return 0.5 + 0.5 * std::tan(0.5 * (t - middle)) / std::tan(quarter);
   if (profile == Profile::hyperbola) return 0.5 + 0.5 * std::tanh(0.5 * (t - middle)) / std::tanh(quarter);
   return (t - from) / (to - from);
+}
+
+GridParameter grid_parameter(Profile profile, double from, double to, double t) {
+  if (profile != Profile::circle && profile != Profile::hyperbola) return {t, 1};
+  const SegmentedRange range(profile, from, to);
+  const double k = range.segment(t), a = range.begin(k), b = range.begin(k + 1);
+  const double s = profile_fraction(profile, a, b, t), half = 0.5 * (t - 0.5 * (a + b)), quarter = 0.25 * (b - a);
+  const double slope = profile == Profile::circle ? 1 / (std::pow(std::cos(half), 2) * std::tan(quarter))
+                                                  : 1 / (std::pow(std::cosh(half), 2) * std::tanh(quarter));
+  return {s == 1 ? b : a + s * (b - a), quarter * slope};
+}
+
+double canonical_parameter(Profile profile, double from, double to, double t) {
+  if (profile != Profile::circle && profile != Profile::hyperbola) return t;
+  const SegmentedRange range(profile, from, to);
+  const double k = range.segment(t), a = range.begin(k), b = range.begin(k + 1);
+  return profile_parameter(profile, a, b, t == b ? 1 : (t - a) / (b - a));
 }
 
 }  // namespace tessera::inline abi_0_1

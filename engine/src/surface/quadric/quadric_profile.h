@@ -31,11 +31,12 @@ ProfileValue profile_value(Profile profile, double t, int order = 0);
 Vec3 canonical_point(const Quadric& quadric, double sign, const ProfileValue& u, const ProfileValue& v);
 
 /// A range of t cut into Bezier segments of equal width: their number, and where segment k begins. The ends are exact.
+/// Beyond them, further segments of the same width follow.
 struct SegmentedRange {
   SegmentedRange(Profile profile, double from, double to);
-  double begin(int k) const { return k == 0 ? from_ : k == count ? to_ : from_ + (to_ - from_) * k / count; }
-  /// Returns the segment that holds t, at a break the one on its right; the first or last for t outside.
-  int segment(double t) const;
+  double begin(double k) const { return k == 0 ? from_ : k == count ? to_ : from_ + (to_ - from_) * k / count; }
+  /// Returns the segment that holds t, a whole number; at a break the one on its right.
+  double segment(double t) const;
 
   int count = 1;
 
@@ -46,5 +47,15 @@ bool is_full_turn(double from, double to);
 /// Convert the fraction s of the Bezier segment over [from, to] to the canonical parameter, and back.
 double profile_parameter(Profile profile, double from, double to, double s);
 double profile_fraction(Profile profile, double from, double to, double t);
+
+/// A parameter of to_bezier()'s grid, and its derivative by the canonical parameter.
+struct GridParameter {
+  double value = 0, slope = 1;
+};
+/// Converts the canonical parameter t on a surface over [from, to]. Beyond the ends further segments follow, so an angle
+/// a full turn away has a parameter a full turn away.
+GridParameter grid_parameter(Profile profile, double from, double to, double t);
+/// Converts a parameter of the grid to the canonical one: the inverse of grid_parameter().
+double canonical_parameter(Profile profile, double from, double to, double t);
 
 }  // namespace tessera::inline abi_0_1
