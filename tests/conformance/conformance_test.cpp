@@ -42,8 +42,6 @@ const std::map<std::string, std::string> refused{
 const std::map<std::string, std::vector<std::string>> warned{
     {"bezierview_bv/SurfLab__tp_poly.bv", {":14: 2 polyhedra are not read"}},
     {"g2_gotools/splipy_elementary_surfaces.g2", {":22: 1 disc is not read"}},
-    // Cylinders, and a surface of a class that GoTools does not list.
-    {"g2_gotools/splipy_winglet_from_step.g2", {": 3 trimmed surfaces that are no splines and no planes are not read"}},
     {"obj_freeform_spec/ex4_cardinal_surface.obj", {":20: 1 statement is not kept, the first here: 1 stech"}},
     {"obj_freeform_spec/ex5_rational_bspline_surface.obj", {":11: 9 statements are not kept, the first here: 9 vt"}},
     {"obj_freeform_tests/bezier_negative_slash_refs.obj", {":5: 4 statements are not kept, the first here: 4 vt"}},

@@ -275,16 +275,86 @@ TEST(G2, TrimmedPlanesEndWhereTheirLoopsDo) {
     }
 }
 
+/// A rectangle of lines from (u0, v0) to (u1, v1), as one loop.
+std::string window(double u0, double u1, double v0, double v1) {
+  std::ostringstream text;
+  text << "1\n4 0.001\n";
+  const auto side = [&](double u, double v, double x, double y) {
+    text << "0 100 0\n2 0\n2 2\n0 0 1 1\n" << u << ' ' << v << '\n' << x << ' ' << y << '\n';
+  };
+  side(u0, v0, u1, v0), side(u1, v0, u1, v1), side(u1, v1, u0, v1), side(u0, v1, u0, v0);
+  return text.str();
+}
+
+/// The corners of the only loop of the model's only surface, in space.
+std::vector<Vec3> loop_corners(const Model& model) {
+  std::vector<Vec3> corners;
+  for (const Curve& curve : model.surfaces.at(0).trims->at(0).curves)
+    corners.push_back(at(model, 0, curve.points().front().x, curve.points().front().y));
+  return corners;
+}
+
+void expect_corners(const std::string& text, const std::array<Vec3, 4>& corners) {
+  const Model model = model_of(parse_g2, "210 1 0 0\n" + text);
+  ASSERT_EQ(model.surfaces.size(), 1u);
+  EXPECT_TRUE(model.warnings.empty());
+  const std::vector<Vec3> found = loop_corners(model);
+  ASSERT_EQ(found.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) expect_near(found[k], corners[k], 1e-14);
+  const Result<PatchSet> set = make_patch_set(model);
+  ASSERT_TRUE(set.ok()) << set.status().message();
+  EXPECT_TRUE(set->trim_faults().empty());
+}
+
+/// Trimmed surfaces whose lines have no bounds, or bounds as good as infinite, end where their loops do.
+TEST(G2, TrimmedElementarySurfacesKeepTheirParameters) {
+  const std::string frame = "1 2 3\n0 0 1\n1 0 0\n";
+  const auto around = [](double radius, double angle, double z) {
+    return Vec3{1 + radius * std::cos(angle), 2 + radius * std::sin(angle), 3 + z};
+  };
+  const auto corners = [](auto&& point, double u0, double u1, double v0, double v1) {
+    return std::array{point(u0, v0), point(u1, v0), point(u1, v1), point(u0, v1)};
+  };
+  const auto pipe = [&](double u, double v) { return around(0.5, u, v); };
+  for (const char* bounds : {"0\n0 6.28318530717959\n", "1\n0 6.28318530717959\n-1e8 1e8\n"}) {
+    expect_corners("260\n3\n0.5\n" + frame + bounds + "0\n" + window(0.3, 1, -2, 5), corners(pipe, 0.3, 1, -2, 5));
+    const auto c = corners(pipe, 0.3, 1, -2, 5);
+    expect_corners("260\n3\n0.5\n" + frame + bounds + "1\n" + window(-2, 5, 0.3, 1),
+                   std::array{c[0], c[3], c[2], c[1]});
+  }
+  for (const double angle : {0.4, -0.4}) {
+    const auto cone = [&](double u, double v) { return around(2 + v * std::tan(angle), u, v); };
+    expect_corners("280\n3\n2\n" + frame + (angle > 0 ? "0.4" : "-0.4") + "\n0\n0 6.28318530717959\n0\n" +
+                       window(0.3, 1, -0.5, 1.5),
+                   corners(cone, 0.3, 1, -0.5, 1.5));
+  }
+  const auto ball = [&](double u, double v) { return around(2 * std::cos(v), u, 2 * std::sin(v)); };
+  expect_corners(
+      "270\n3\n2\n" + frame + "0 6.28318530717959 -1.5707963267949 1.5707963267949\n0\n" + window(0.3, 1, -0.5, 1.1),
+      corners(ball, 0.3, 1, -0.5, 1.1));
+}
+
+TEST(G2, TrimmedExtrusionsKeepTheirParameters) {
+  const std::string parabola = "3 0\n3 3\n0 0 0 2 2 2\n0 0 0\n1 0 0\n2 4 0\n", along = "0 0.5 2\n";
+  const auto point = [](double u, double v) { return Vec3{u, u * u + 0.5 * v, 2 * v}; };
+  const std::array corners{point(0.5, -1), point(1.5, -1), point(1.5, 3), point(0.5, 3)};
+  for (const char* bounds : {"0\n0 2\n", "1\n0 2\n-1e8 1e8\n"}) {
+    expect_corners("261\n3\n" + parabola + along + bounds + "0\n" + window(0.5, 1.5, -1, 3), corners);
+    expect_corners("261\n3\n" + parabola + along + bounds + "1\n" + window(-1, 3, 0.5, 1.5),
+                   {corners[0], corners[3], corners[2], corners[1]});
+  }
+}
+
 TEST(G2, OtherTrimmedSurfacesAreSkipped) {
-  const std::string cylinder = "260\n3\n1\n0 0 0\n0 0 1\n1 0 0\n1\n0 1\n0 1\n0\n1\n1 0.01\n0 100 0\n";
+  const std::string torus = "290\n3\n2\n1\n0 0 0\n0 0 1\n1 0 0\n1\n0 1\n0 1\n0\n1\n1 0.01\n0 100 0\n";
   const std::string without = "200\n" + square + "1\n1 1e-6\n0 0 100\n3 0\n2 2\n0 0 1 1\n0 0 0\n1 0 0\n";
   const std::string conic = "200\n" + square + "1\n1 1e-6\n0 140 0\n2\n1 2 3 4\n";
   const std::string header = "210 1 0 0\n";
-  const Model model = model_of(parse_g2, header + cylinder + header + without + header + conic + bent);
+  const Model model = model_of(parse_g2, header + torus + header + without + header + conic + bent);
   EXPECT_EQ(model.surfaces.size(), 1u);
   EXPECT_EQ(model.warnings, (std::vector<std::string>{
-                                "m:1: 1 trimmed surface that is no spline and no plane is not read",
-                                "m:15: 2 trimmed surfaces without splines or lines in their parameters are not read"}));
+                                "m:1: 1 trimmed torus or surface of another class is not read",
+                                "m:16: 2 trimmed surfaces without splines or lines in their parameters are not read"}));
 }
 
 TEST(G2, LoopsThatAreWrong) {
@@ -297,7 +367,7 @@ TEST(G2, LoopsThatAreWrong) {
                  Status::no_index, "m:1: object 1 (class 210): a curve of its loops: ");
   expect_refused(
       parse_g2("210 1 0 0\n250\n3\n0 0 0\n0 0 1\n1 0 0\n0\n0\n1\n1 0.1\n0 120 0\n2\n0 0\n1 0\n1\n0 4\n0\n", "m"),
-      StatusCode::parse_error, Status::no_index, "its loops enclose nothing, so the plane has no bounds");
+      StatusCode::parse_error, Status::no_index, "its loops enclose nothing");
 }
 
 }  // namespace

@@ -28,19 +28,18 @@ constexpr std::pair<std::int64_t, PartName> unread_classes[] = {
     {150, {"bounded curve", "bounded curves"}},
     {160, {"hyperbola", "hyperbolas"}},
     {170, {"parabola", "parabolas"}},
+    {261, {"surface of linear extrusion", "surfaces of linear extrusion"}},
     {291, {"surface of revolution", "surfaces of revolution"}},
     {292, {"disc", "discs"}},
     {293, {"LR spline surface", "LR spline surfaces"}},
     {294, {"T-spline surface", "T-spline surfaces"}},
-    {295, {"surface of linear sweep", "surfaces of linear sweep"}},
     {400, {"cloud of points", "clouds of points"}},
     {410, {"cloud of lines", "clouds of lines"}},
     {700, {"spline volume", "spline volumes"}}};
 constexpr PartName others{"object of another class", "objects of other classes"},
     unbounded{"unbounded surface", "unbounded surfaces"},
     flat{"surface that is not in space", "surfaces that are not in space"},
-    trimmed_others{"trimmed surface that is no spline and no plane",
-                   "trimmed surfaces that are no splines and no planes"},
+    trimmed_others{"trimmed torus or surface of another class", "trimmed tori or surfaces of other classes"},
     trimmed_otherwise{"trimmed surface without splines or lines in its parameters",
                       "trimmed surfaces without splines or lines in their parameters"};
 
@@ -123,14 +122,16 @@ class G2Reader {
   }
 
   Status read_elementary(std::int64_t kind, G2Numbers& numbers) {
-    Result<G2Object> object = read_g2_elementary(kind, numbers);
-    if (!object) return object.status();
-    if (!object->surface) {
+    const G2Elementary record = read_g2_elementary(kind, numbers, false);
+    if (!numbers.ok()) return numbers.status();
+    if (!record.bounded) {
       pass_over(unbounded);
       return {};
     }
-    swapped_ += object->swapped;
-    add({{}, *std::move(object->surface), object->placement});
+    Result<G2Object> object = make_g2_elementary(kind, record, numbers);
+    if (!object) return object.status();
+    swapped_ += record.swapped;
+    add({{}, std::move(object->surface), object->placement});
     return {};
   }
 
@@ -179,11 +180,17 @@ class G2Reader {
   }
 
   Status read_trimmed(G2Numbers& numbers) {
-    switch (numbers.integer("the class of the trimmed surface", 100, 999)) {
+    const std::int64_t kind = numbers.integer("the class of the trimmed surface", 100, 999);
+    switch (kind) {
       case g2_spline_surface:
         return read_trimmed_spline(numbers);
       case g2_plane:
-        return read_trimmed_plane(numbers);
+      case g2_cylinder:
+      case g2_sphere:
+      case g2_cone:
+        return read_trimmed_elementary(kind, numbers);
+      case g2_extrusion:
+        return read_trimmed_extrusion(numbers);
       default:
         if (numbers.ok()) pass_over(trimmed_others);
         return numbers.status();
@@ -206,40 +213,75 @@ class G2Reader {
     return {};
   }
 
-  /// Reads a plane, whose own bounds are often as good as infinite: it ends where its loops do.
-  Status read_trimmed_plane(G2Numbers& numbers) {
-    const Result<G2Plane> plane = read_g2_plane(numbers);
-    if (!plane) return plane.status();
-    Result<G2Loops> loops = read_g2_loops(numbers);
-    if (!loops) return loops.status();
-    if (loops->unread) {
-      pass_over(trimmed_otherwise);
-      return {};
+  /// Reads an elementary surface. Bounds along straight lines are often as good as infinite, if there are any: there the
+  /// surface ends where its loops do.
+  Status read_trimmed_elementary(std::int64_t kind, G2Numbers& numbers) {
+    G2Elementary record = read_g2_elementary(kind, numbers, true);
+    if (!numbers.ok()) return numbers.status();
+    Result<G2Loops> loops = take_loops(numbers, record.swapped);
+    if (!loops || loops->unread) return loops.status();
+    const Box3 box = box_of(loops->loops);
+    if (kind == g2_plane) record.range.u0 = box.lower.x, record.range.u1 = box.upper.x;
+    if (kind != g2_sphere) record.range.v0 = box.lower.y, record.range.v1 = box.upper.y;
+    Result<G2Object> object = make_g2_elementary(kind, record, numbers);
+    if (!object) return object.status();
+    const double shift = object->shift_v;
+    if (shift != 0) {
+      const Status status = map_points(loops->loops, [shift](const Vec3& p) { return Vec3{p.x, p.y + shift, 0}; });
+      if (!status.ok()) return status;
     }
-    if (plane->swapped)
-      if (Status status = swap_parameters(loops->loops); !status.ok()) return status;
-    Box3 box;
-    for (const TrimLoop& loop : loops->loops)
-      for (const Curve& curve : loop.curves)
-        for (const Vec3& p : curve.points()) box.extend(p);
-    if (!(box.lower.x < box.upper.x && box.lower.y < box.upper.y))
-      return numbers.failure("its loops enclose nothing, so the plane has no bounds");
-    Result<Surface> surface = make_g2_plane({box.lower.x, box.upper.x, box.lower.y, box.upper.y});
-    if (!surface) return refused_element(numbers, surface.status());
-    add({{}, *std::move(surface), plane->placement, std::move(loops->loops)});
+    add({{}, std::move(object->surface), object->placement, std::move(loops->loops)});
     return {};
   }
 
-  static Status swap_parameters(std::vector<TrimLoop>& loops) {
+  Status read_trimmed_extrusion(G2Numbers& numbers) {
+    const Result<G2Extrusion> extrusion = read_g2_extrusion(numbers);
+    if (!extrusion) return extrusion.status();
+    Result<G2Loops> loops = take_loops(numbers, extrusion->swapped);
+    if (!loops || loops->unread) return loops.status();
+    const Box3 box = box_of(loops->loops);
+    Result<Surface> surface = make_g2_extrusion(*extrusion, {box.lower.y, box.upper.y});
+    if (!surface) return refused_element(numbers, surface.status());
+    add({{}, *std::move(surface), {}, std::move(loops->loops)});
+    return {};
+  }
+
+  /// Reads the loops of a surface whose u and v are not swapped here. Passes over the object if they are unread.
+  Result<G2Loops> take_loops(G2Numbers& numbers, bool swapped) {
+    Result<G2Loops> loops = read_g2_loops(numbers);
+    if (!loops) return loops;
+    if (loops->unread) {
+      pass_over(trimmed_otherwise);
+      return loops;
+    }
+    const Box3 box = box_of(loops->loops);
+    if (!(box.lower.x < box.upper.x && box.lower.y < box.upper.y)) return numbers.failure("its loops enclose nothing");
+    if (!swapped) return loops;
+    if (Status status = map_points(loops->loops, [](const Vec3& p) { return Vec3{p.y, p.x, 0}; }); !status.ok())
+      return status;
+    return loops;
+  }
+
+  static Box3 box_of(const std::vector<TrimLoop>& loops) {
+    Box3 box;
+    for (const TrimLoop& loop : loops)
+      for (const Curve& curve : loop.curves)
+        for (const Vec3& p : curve.points()) box.extend(p);
+    return box;
+  }
+
+  /// Maps the control points of all curves: right for an affine map.
+  template <class Map>
+  static Status map_points(std::vector<TrimLoop>& loops, const Map& map) {
     for (TrimLoop& loop : loops)
       for (Curve& curve : loop.curves) {
-        std::vector<Vec3> points(curve.points().begin(), curve.points().end());
-        for (Vec3& p : points) std::swap(p.x, p.y);
-        Result<Curve> swapped = curve.is_rational()
-                                    ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots())
-                                    : Curve::b_spline(curve.degree(), points, curve.knots());
-        if (!swapped) return swapped.status();
-        curve = *std::move(swapped);
+        std::vector<Vec3> points;
+        for (const Vec3& p : curve.points()) points.push_back(map(p));
+        Result<Curve> mapped = curve.is_rational()
+                                   ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots())
+                                   : Curve::b_spline(curve.degree(), points, curve.knots());
+        if (!mapped) return mapped.status();
+        curve = *std::move(mapped);
       }
     return {};
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tessera/curve.h"
 #include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
@@ -24,6 +25,7 @@ enum G2Class : std::int64_t {
   g2_trimmed_surface = 210,
   g2_plane = 250,
   g2_cylinder = 260,
+  g2_extrusion = 261,
   g2_sphere = 270,
   g2_cone = 280,
   g2_torus = 290,
@@ -62,28 +64,37 @@ class G2Numbers {
   Status status_;
 };
 
-/// An object; empty if it is well-formed but of a kind that is not read: not a surface in space, or unbounded.
-struct G2Object {
-  std::optional<Surface> surface = {};
-  Affine placement = {};
-  std::string_view unread = {};  ///< the reason if there is no surface: "unbounded"
-  bool swapped = false;          ///< the file has u and v swapped
+/// A plane, cylinder, sphere, cone or torus as its record states it.
+struct G2Elementary {
+  double radius = 0, minor_radius = 0, angle = 0;
+  Vec3 location, z_axis, x_axis;
+  bool bounded = true;   ///< if not, `range` lacks v, and u of planes too
+  bool swapped = false;  ///< whether the file has u and v swapped; `range` has not
+  Domain range;
 };
+/// Reads an elementary surface after its header. One without bounds is read to its end if `is_whole`.
+G2Elementary read_g2_elementary(std::int64_t kind, G2Numbers& numbers, bool is_whole);
 
-/// Reads a plane, cylinder, sphere, cone or torus after its header. Parameters are the file's (angles in radians), with
-/// two exceptions: a cone's v counts from the apex, and a torus has the parameters of its NURBS on [0,1]^2 or a part of
-/// it.
-Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers);
+/// A surface and its place.
+struct G2Object {
+  Surface surface;
+  Affine placement;
+  double shift_v = 0;  ///< added to the v of the file
+};
+/// Makes the surface of a record that has all its bounds. Parameters are the file's (angles in radians), with two
+/// exceptions: a cone's v counts from the apex, and a torus has the parameters of its NURBS on [0,1]^2 or a part of it.
+Result<G2Object> make_g2_elementary(std::int64_t kind, const G2Elementary& record, const G2Numbers& numbers);
 
-/// A plane without its bounds: where its frame lies, and whether the file has u and v swapped.
-struct G2Plane {
-  Affine placement = {};
+/// A curve that is moved along a direction, without its bounds along v.
+struct G2Extrusion {
+  Curve profile;   ///< u is its parameter
+  Vec3 direction;  ///< per unit of v
   bool swapped = false;
 };
-/// Reads a plane after its class, bounded or not.
-Result<G2Plane> read_g2_plane(G2Numbers& numbers);
-/// Makes the rectangle `range` of the plane z = 0, in its own frame.
-Result<Surface> make_g2_plane(const Domain& range);
+/// Reads a surface of linear extrusion after its class.
+Result<G2Extrusion> read_g2_extrusion(G2Numbers& numbers);
+/// Makes the part of an extrusion over `range` of v.
+Result<Surface> make_g2_extrusion(const G2Extrusion& extrusion, const Interval& range);
 
 /// One direction of a spline: the number of points, the order, the knots.
 struct G2Line {
@@ -100,5 +111,7 @@ struct G2Loops {
 };
 /// Reads the loops after the surface that they trim.
 Result<G2Loops> read_g2_loops(G2Numbers& numbers);
+/// Reads a spline curve of this dimension, 2 or 3, after its class.
+Result<Curve> read_g2_curve(G2Numbers& numbers, std::int64_t dimension);
 
 }  // namespace tessera::inline abi_0_1

@@ -27,45 +27,13 @@ void snap_pole(double& latitude) {
   if (std::abs(std::abs(latitude) - pi / 2) <= printed) latitude = std::copysign(pi / 2, latitude);
 }
 
-struct Elementary {
-  double radius = 0, minor_radius = 0, angle = 0;
-  Vec3 location, z_axis, x_axis;
-  bool bounded = true;
-  Domain range;
-};
-
-Elementary read_numbers(std::int64_t kind, G2Numbers& numbers, bool& swapped) {
-  Elementary e;
-  numbers.integer("the dimension 3", 3, 3);
-  if (kind != g2_plane) e.radius = numbers.number("a radius");
-  if (kind == g2_torus) e.minor_radius = numbers.number("the minor radius");
-  e.location = numbers.vector("the location");
-  e.z_axis = numbers.vector("the z axis");
-  e.x_axis = numbers.vector("the x axis");
-  if (kind == g2_cone) e.angle = numbers.number("the cone's angle");
-  if (kind == g2_torus) numbers.integer("the flag of the outer part", 0, 1);
-  if (kind == g2_plane || kind == g2_cylinder || kind == g2_cone) {
-    e.bounded = numbers.integer("the flag of a bounded surface", 0, 1) == 1;
-  }
-  if (!numbers.ok() || !e.bounded) return e;
-  for (double* const limit : {&e.range.u0, &e.range.u1, &e.range.v0, &e.range.v1}) {
-    *limit = numbers.number("a limit of the parameters");
-  }
-  swapped = numbers.integer("the flag of swapped parameters", 0, 1) == 1;
-  return e;
-}
-
-}  // namespace
-
-Result<Surface> make_g2_plane(const Domain& d) {
+Result<Surface> plane(const Domain& d) {
   const std::array<double, 4> u{d.u0, d.u0, d.u1, d.u1}, v{d.v0, d.v0, d.v1, d.v1};
   const std::array<Vec3, 4> corners{Vec3{d.u0, d.v0, 0}, Vec3{d.u0, d.v1, 0}, Vec3{d.u1, d.v0, 0}, Vec3{d.u1, d.v1, 0}};
   Result<BSplineSurface> surface = BSplineSurface::polynomial(1, u, 1, v, corners);
   if (!surface) return surface.status();
   return Surface(*std::move(surface));
 }
-
-namespace {
 
 Result<Surface> cylinder(double radius, const Domain& range) {
   return quadric_part(QuadricKind::elliptic_cylinder, {.a = 1 / radius / radius, .b = 1 / radius / radius, .k = -1},
@@ -80,10 +48,10 @@ Result<Surface> sphere(double radius, Domain range) {
 }
 
 /// The radius at v is R + v tan(angle). The apex lies at v = -R / tan(angle), where the canonical cone has v = 0.
-Result<Surface> cone(const Elementary& e, Affine& placement) {
+Result<Surface> cone(const G2Elementary& e, Affine& placement, double& shift_v) {
   const double slope = std::tan(e.angle);
   if (std::abs(slope) <= printed) return cylinder(e.radius, e.range);
-  const double apex = e.radius / slope;
+  const double apex = shift_v = e.radius / slope;
   placement = placement * Affine::translated({0, 0, -apex}) * Affine::scaled({std::abs(slope), std::abs(slope), 1});
   const Domain range{e.range.u0, e.range.u1, e.range.v0 + apex, e.range.v1 + apex};
   // A falling radius is the part of the cone below the apex: the same circles half a turn further on.
@@ -93,59 +61,56 @@ Result<Surface> cone(const Elementary& e, Affine& placement) {
   return quadric_part(QuadricKind::elliptic_cone, {.a = 1, .b = 1, .c = -1}, range);  // slope 1, then scaled
 }
 
-Result<Surface> make_surface(std::int64_t kind, const Elementary& e, Affine& placement) {
+Result<Surface> make_surface(std::int64_t kind, const G2Elementary& e, Affine& placement, double& shift_v) {
   const bool positive = e.radius > 0 && (kind != g2_torus || e.minor_radius > 0);
   if (!positive && kind != g2_plane && !(kind == g2_cone && e.radius == 0)) {
     return Status(StatusCode::invalid_argument, "its radius is not above 0");
   }
   switch (kind) {
     case g2_plane:
-      return make_g2_plane(e.range);
+      return plane(e.range);
     case g2_cylinder:
       return cylinder(e.radius, e.range);
     case g2_sphere:
       return sphere(e.radius, e.range);
     case g2_cone:
-      return cone(e, placement);
+      return cone(e, placement, shift_v);
     default:
       return torus_part(e.radius, e.minor_radius, e.range);
   }
 }
 
-Result<Affine> placed(const Elementary& e, const G2Numbers& numbers) {
-  const std::optional<Affine> placement = frame(e.location, e.z_axis, e.x_axis);
-  if (!placement) return numbers.failure("expected a z axis and an x axis of different directions");
-  return *placement;
-}
-
 }  // namespace
 
-Result<G2Plane> read_g2_plane(G2Numbers& numbers) {
-  G2Plane plane;
-  const Elementary e = read_numbers(g2_plane, numbers, plane.swapped);
-  if (!e.bounded) plane.swapped = numbers.integer("the flag of swapped parameters", 0, 1) == 1;
-  if (!numbers.ok()) return numbers.status();
-  const Result<Affine> placement = placed(e, numbers);
-  if (!placement) return placement.status();
-  plane.placement = *placement;
-  return plane;
+G2Elementary read_g2_elementary(std::int64_t kind, G2Numbers& numbers, bool is_whole) {
+  G2Elementary e;
+  numbers.integer("the dimension 3", 3, 3);
+  if (kind != g2_plane) e.radius = numbers.number("a radius");
+  if (kind == g2_torus) e.minor_radius = numbers.number("the minor radius");
+  e.location = numbers.vector("the location");
+  e.z_axis = numbers.vector("the z axis");
+  e.x_axis = numbers.vector("the x axis");
+  if (kind == g2_cone) e.angle = numbers.number("the cone's angle");
+  if (kind == g2_torus) numbers.integer("the flag of the outer part", 0, 1);
+  if (kind == g2_plane || kind == g2_cylinder || kind == g2_cone)
+    e.bounded = numbers.integer("the flag of a bounded surface", 0, 1) == 1;
+  if (!numbers.ok() || (!e.bounded && !is_whole)) return e;
+  std::vector<double*> limits;
+  if (e.bounded || kind != g2_plane) limits = {&e.range.u0, &e.range.u1};
+  if (e.bounded) limits.insert(limits.end(), {&e.range.v0, &e.range.v1});
+  for (double* const limit : limits) *limit = numbers.number("a limit of the parameters");
+  e.swapped = numbers.integer("the flag of swapped parameters", 0, 1) == 1;
+  return e;
 }
 
-Result<G2Object> read_g2_elementary(std::int64_t kind, G2Numbers& numbers) {
-  G2Object object;
-  const Elementary e = read_numbers(kind, numbers, object.swapped);
-  if (!numbers.ok()) return numbers.status();
-  if (!e.bounded) {
-    object.unread = "unbounded";
-    return object;
-  }
-  const Result<Affine> placement = placed(e, numbers);
-  if (!placement) return placement.status();
-  object.placement = *placement;
-  Result<Surface> surface = make_surface(kind, e, object.placement);
+Result<G2Object> make_g2_elementary(std::int64_t kind, const G2Elementary& record, const G2Numbers& numbers) {
+  const std::optional<Affine> axes = frame(record.location, record.z_axis, record.x_axis);
+  if (!axes) return numbers.failure("expected a z axis and an x axis of different directions");
+  Affine placement = *axes;
+  double shift_v = 0;
+  Result<Surface> surface = make_surface(kind, record, placement, shift_v);
   if (!surface) return refused_element(numbers, surface.status());
-  object.surface = *std::move(surface);
-  return object;
+  return G2Object{*std::move(surface), placement, shift_v};
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -18,6 +18,32 @@ constexpr std::int64_t old_spline_curve = 1;  // the class that old versions wri
 /// A curve in the parameters; none in space.
 using ReadCurve = std::optional<Curve>;
 
+/// The numbers of a spline curve after its class.
+struct SplineNumbers {
+  SplineNumbers(G2Numbers& numbers, std::int64_t dimension) {
+    numbers.integer("the dimension " + std::to_string(dimension) + " of a curve", dimension, dimension);
+    const bool rational = numbers.integer("the flag of a rational curve", 0, 1) == 1;
+    line = read_g2_line(numbers);
+    for (std::int64_t k = 0; k < line.points && numbers.ok(); ++k) {
+      Vec3 p;
+      p.x = numbers.number("a coordinate of a curve");
+      p.y = numbers.number("a coordinate of a curve");
+      if (dimension == 3) p.z = numbers.number("a coordinate of a curve");
+      const double w = rational ? numbers.positive("a weight of a curve") : 1;
+      if (rational) weights.push_back(w);
+      points.push_back({p.x / w, p.y / w, p.z / w});
+    }
+  }
+
+  G2Line line;
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+};
+
+Result<Curve> made(Result<Curve> curve, const G2Numbers& numbers) {
+  return curve ? std::move(curve) : refused_element(numbers, curve.status(), "a curve of its loops: ");
+}
+
 class LoopReader {
  public:
   explicit LoopReader(G2Numbers& numbers) : numbers_(numbers) {}
@@ -54,7 +80,7 @@ class LoopReader {
   }
 
   Result<ReadCurve> read_flat(std::int64_t kind) {
-    if (kind == g2_spline_curve || kind == old_spline_curve) return read_spline(2);
+    if (kind == g2_spline_curve || kind == old_spline_curve) return read_spline();
     if (kind == g2_line) return read_line();
     unread_ = numbers_.ok();
     return ReadCurve();
@@ -62,7 +88,7 @@ class LoopReader {
 
   void skip_spatial(std::int64_t kind) {
     if (kind == g2_spline_curve || kind == old_spline_curve) {
-      static_cast<void>(read_spline(3));
+      skip_spline();
     } else if (kind == g2_line || kind == g2_circle) {
       numbers_.integer("the dimension 3 of a curve in space", 3, 3);
       if (kind == g2_circle) numbers_.number("the radius of a circle");
@@ -74,6 +100,9 @@ class LoopReader {
       unread_ = numbers_.ok();
     }
   }
+
+  /// Skips a spline in space, which need not be one that can be made.
+  void skip_spline() { const SplineNumbers ignored(numbers_, 3); }
 
   void skip_range() {
     numbers_.number("a limit of a curve");
@@ -109,32 +138,14 @@ class LoopReader {
     }
     std::array ends{point + range.from * direction, point + range.to * direction};
     if (range.reversed) std::swap(ends[0], ends[1]);
-    return made(Curve::bezier(ends));
+    Result<Curve> line = made(Curve::bezier(ends), numbers_);
+    if (!line) return line.status();
+    return ReadCurve(*std::move(line));
   }
 
-  Result<ReadCurve> read_spline(std::int64_t dimension) {
-    numbers_.integer("the dimension " + std::to_string(dimension) + " of a curve", dimension, dimension);
-    const bool rational = numbers_.integer("the flag of a rational curve", 0, 1) == 1;
-    const G2Line line = read_g2_line(numbers_);
-    std::vector<Vec3> points;
-    std::vector<double> weights;
-    for (std::int64_t k = 0; k < line.points && numbers_.ok(); ++k) {
-      Vec3 p;
-      p.x = numbers_.number("a coordinate of a curve");
-      p.y = numbers_.number("a coordinate of a curve");
-      if (dimension == 3) p.z = numbers_.number("a coordinate of a curve");
-      const double w = rational ? numbers_.positive("a weight of a curve") : 1;
-      if (rational) weights.push_back(w);
-      points.push_back({p.x / w, p.y / w, p.z / w});
-    }
-    if (!numbers_.ok()) return numbers_.status();
-    if (dimension == 3) return ReadCurve();
-    return made(rational ? Curve::nurbs(line.degree(), points, weights, line.knots)
-                         : Curve::b_spline(line.degree(), points, line.knots));
-  }
-
-  Result<ReadCurve> made(Result<Curve> curve) const {
-    if (!curve) return refused_element(numbers_, curve.status(), "a curve of its loops: ");
+  Result<ReadCurve> read_spline() {
+    Result<Curve> curve = read_g2_curve(numbers_, 2);
+    if (!curve) return curve.status();
     return ReadCurve(*std::move(curve));
   }
 
@@ -153,6 +164,17 @@ G2Line read_g2_line(G2Numbers& numbers) {
   line.knots.reserve(std::min(static_cast<std::size_t>(count), numbers.cursor().remaining() / 2 + 1));
   for (std::int64_t k = 0; k < count && numbers.ok(); ++k) line.knots.push_back(numbers.number("a knot"));
   return line;
+}
+
+Result<Curve> read_g2_curve(G2Numbers& numbers, std::int64_t dimension) {
+  const SplineNumbers spline(numbers, dimension);
+  if (!numbers.ok()) return numbers.status();
+  const int degree = spline.line.degree();
+  Result<Curve> curve = spline.weights.empty() ? Curve::b_spline(degree, spline.points, spline.line.knots)
+                                               : Curve::nurbs(degree, spline.points, spline.weights, spline.line.knots);
+  if (!curve)
+    return refused_element(numbers, curve.status(), dimension == 2 ? "a curve of its loops: " : "its curve: ");
+  return curve;
 }
 
 Result<G2Loops> read_g2_loops(G2Numbers& numbers) { return LoopReader(numbers).read(); }
