@@ -35,8 +35,8 @@ class FaceTrimsFinder {
     const auto [first, last] = known_.equal_range(key_of(loops));
     for (auto known = first; known != last; ++known)
       if (known->second.is_for(loops, grid, options)) return &known->second.trims;
-    Result<TrimRegion> region =
-        TrimRegion::Impl::make(*loops, grid.breaks_u(), grid.breaks_v(), options, TrimRegion::Impl::Use::patches);
+    Result<TrimRegion> region = TrimRegion::Impl::make(*loops, grid.breaks_u(), grid.breaks_v(), options,
+                                                       TrimRegion::Impl::Use::patches, &extractions_);
     if (!region) return region.status();
     FaceTrims trims{*std::move(region), {}};
     if (!trims.region.is_whole()) trims.uses = patch_uses(trims.region);
@@ -68,6 +68,7 @@ class FaceTrimsFinder {
   }
 
   std::unordered_multimap<double, Known> known_;
+  CurveExtractions extractions_;
 };
 
 /// The patches of one surface after the other, and the source of each patch.

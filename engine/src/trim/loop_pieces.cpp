@@ -8,7 +8,6 @@
 
 #include "base/text.h"
 #include "convert/spline/curve_pieces.h"
-#include "surface/spline/spline_lines.h"
 #include "trim/monotone_pieces.h"
 
 namespace tessera::inline abi_0_1 {
@@ -65,8 +64,10 @@ double shift_into_domain(TrimPiece& piece, const CutAxis& axis, const CutAxis& a
 
 class LoopBuilder {
  public:
-  LoopBuilder(const TrimLoop& loop, std::uint32_t index, const CutLines& lines)
-      : loop_(loop), index_(index), lines_(lines) {}
+  LoopBuilder(const TrimLoop& loop, std::uint32_t index, const CutLines& lines, CurveExtractions& extractions)
+      : loop_(loop), index_(index), lines_(lines), extractions_(extractions) {
+    like_.loop = index;
+  }
 
   Result<LoopPieces> build() {
     std::size_t spans = 0;
@@ -90,7 +91,7 @@ class LoopBuilder {
       append_spans(curve, static_cast<std::uint32_t>(k));
       return {};
     }
-    const BezierPieces spans = bezier_pieces(curve, extraction_of(curve));
+    const BezierPieces spans = bezier_pieces(curve, extractions_.of(curve));
     const auto degree = static_cast<std::size_t>(spans.degree);
     ParameterPoint largest;
     for (const Vec3& p : curve.points()) largest = larger(largest, distance({p.x, p.y}, {}));
@@ -109,16 +110,6 @@ class LoopBuilder {
       append(std::move(bezier), error, static_cast<std::uint32_t>(k), range);
     }
     return {};
-  }
-
-  /// Curves of one file often have equal knots.
-  const Extraction& extraction_of(const Curve& curve) {
-    const bool is_known = extracted_ && extracted_->degree() == curve.degree() &&
-                          extracted_->domain() == curve.domain() &&
-                          std::ranges::equal(extracted_->knots(), curve.knots());
-    if (!is_known) extraction_ = make_extraction(line_of(curve));
-    extracted_ = &curve;
-    return extraction_;
   }
 
   /// Whether the control points of all spans are the curve's own: its domain is that of the knots, and each knot there
@@ -184,12 +175,10 @@ class LoopBuilder {
   }
 
   void append(PlaneBezier bezier, const ParameterPoint& error, std::uint32_t curve, const Interval& range) {
-    TrimPiece like;
-    like.loop = index_;
-    like.curve_index = curve;
-    like.range = range;
+    like_.curve_index = curve;
+    like_.range = range;
     const std::size_t begin = made_.pieces.size();
-    append_monotone_pieces(std::move(bezier), error, like, *all_, made_.pieces);
+    append_monotone_pieces(std::move(bezier), error, like_, *all_, made_.pieces);
     for (std::size_t k = begin; k < made_.pieces.size(); ++k) {
       TrimPiece& piece = made_.pieces[k];
       double turns_u = 0, turns_v = 0;
@@ -311,18 +300,20 @@ class LoopBuilder {
   const TrimLoop& loop_;
   std::uint32_t index_;
   const CutLines& lines_;
+  CurveExtractions& extractions_;
+  TrimPiece like_;  ///< loop, curve and range of the pieces to append
   CutLines repeated_;
   const CutLines* all_ = &lines_;  ///< the lines of all copies of the domain that the curve meets
-  const Curve* extracted_ = nullptr;
-  Extraction extraction_;  ///< of the curve `extracted_`
   LoopPieces made_;
   std::vector<bool> is_odd_copy_;  ///< of each piece: whether it came from a copy of the domain of odd number along u
 };
 
 }  // namespace
 
-Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines) {
-  return LoopBuilder(loop, index, lines).build();
+Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines,
+                               CurveExtractions* shared) {
+  CurveExtractions own;
+  return LoopBuilder(loop, index, lines, shared ? *shared : own).build();
 }
 
 }  // namespace tessera::inline abi_0_1

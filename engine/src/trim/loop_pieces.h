@@ -6,6 +6,7 @@
 
 #include "tessera/status.h"
 #include "tessera/trim_loop.h"
+#include "trim/curve_extractions.h"
 #include "trim/cut_lines.h"
 #include "trim/trim_piece.h"
 
@@ -25,8 +26,9 @@ struct LoopPieces {
   bool holds_left = false, holds_right = false;
 };
 
-/// Makes the pieces of a loop. Errors: unsupported (coordinates beyond 1e100; more than 64 periods), those of
+/// Makes the pieces of a loop. `shared`: extractions to take and to add to; null: none. Errors: unsupported (coordinates beyond 1e100; more than 64 periods), those of
 /// to_bezier(Curve).
-Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines);
+Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines,
+                               CurveExtractions* shared = nullptr);
 
 }  // namespace tessera::inline abi_0_1

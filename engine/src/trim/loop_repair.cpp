@@ -55,12 +55,13 @@ struct Direction {
 
 class LoopRepair {
  public:
-  LoopRepair(std::span<const TrimLoop> loops, const CutLines& lines) : loops_(loops), lines_(lines) {}
+  LoopRepair(std::span<const TrimLoop> loops, const CutLines& lines, CurveExtractions& extractions)
+      : loops_(loops), lines_(lines), extractions_(extractions) {}
 
   Result<RepairedLoops> repair() {
     bool all_holes = true;
     for (std::size_t k = 0; k < loops_.size(); ++k) {
-      Result<LoopPieces> loop = loop_pieces(loops_[k], static_cast<std::uint32_t>(k), lines_);
+      Result<LoopPieces> loop = loop_pieces(loops_[k], static_cast<std::uint32_t>(k), lines_, &extractions_);
       if (!loop) return named(loop.status(), k);
       tell_gaps(k, *loop);
       std::erase_if(loop->pieces, [](const TrimPiece& piece) { return piece.start() == piece.end(); });
@@ -209,6 +210,7 @@ class LoopRepair {
 
   std::span<const TrimLoop> loops_;
   const CutLines& lines_;
+  CurveExtractions& extractions_;
   RepairedLoops made_;
   int turns_u_ = 0, turns_v_ = 0;
   std::array<bool, 2> holds_corner_{};  ///< whether loops enclose the corner where both seams meet, on either side
@@ -217,8 +219,9 @@ class LoopRepair {
 
 }  // namespace
 
-Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines) {
-  return LoopRepair(loops, lines).repair();
+Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines, CurveExtractions* shared) {
+  CurveExtractions own;
+  return LoopRepair(loops, lines, shared ? *shared : own).repair();
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -6,6 +6,7 @@
 
 #include "tessera/status.h"
 #include "tessera/trim_loop.h"
+#include "trim/curve_extractions.h"
 #include "trim/cut_lines.h"
 #include "trim/trim_piece.h"
 
@@ -19,7 +20,8 @@ struct RepairedLoops {
   std::vector<LoopRemark> remarks;
 };
 
-/// Cuts, joins and repairs the loops; see TrimRegion. Errors: those of loop_pieces().
-Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines);
+/// Cuts, joins and repairs the loops; see TrimRegion. `shared`, errors: those of loop_pieces().
+Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines,
+                                   CurveExtractions* shared = nullptr);
 
 }  // namespace tessera::inline abi_0_1

@@ -144,21 +144,23 @@ class Cutter {
   /// Appends the piece between two cuts if its control polygon is monotone up to rounding, or `always`. Returns whether
   /// it did, or the piece is a point.
   bool append_monotone(const Cut& first, const Cut& last, bool always = false) {
-    TrimPiece piece = like_;
+    TrimPiece& piece = pieces_.emplace_back(like_);
     piece.curve = part(curve_, first.t, last.t);
     piece.curve.points.front() = first.at;
     piece.curve.points.back() = last.at;
     const ParameterPoint moved = larger(make_monotone(piece.curve), larger(first.moved, last.moved));
     const ParameterPoint most = 8 * rounding_ + (first.moved + last.moved);
-    if ((moved.u > most.u || moved.v > most.v) && !always) return false;
-    if (first.at == last.at) return true;
+    const bool is_monotone = (moved.u <= most.u && moved.v <= most.v) || always;
+    if (!is_monotone || first.at == last.at) {
+      pieces_.pop_back();
+      return is_monotone;
+    }
     const bool whole = first.t == 0 && last.t == 1;
     piece.error = error_ + moved + (whole ? ParameterPoint{} : rounding_);
     const double width = like_.range.to - like_.range.from;
     piece.range = {first.t == 0 ? like_.range.from : like_.range.from + first.t * width,
                    last.t == 1 ? like_.range.to : like_.range.from + last.t * width};
     set_line(piece, first, last);
-    pieces_.push_back(std::move(piece));
     return true;
   }
 

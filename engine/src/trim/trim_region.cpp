@@ -126,7 +126,8 @@ void sort_patches(TrimRegion::Impl& region) {
 }  // namespace
 
 Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
-                                          std::span<const double> breaks_v, const TrimOptions& options, Use use) {
+                                          std::span<const double> breaks_v, const TrimOptions& options, Use use,
+                                          CurveExtractions* shared) {
   return guarded([&]() -> Result<TrimRegion> {
     if (Status status = check_breaks(breaks_u, "breaks_u"); !status.ok()) return status;
     if (Status status = check_breaks(breaks_v, "breaks_v"); !status.ok()) return status;
@@ -137,7 +138,7 @@ Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, std::
     region->lines = {axis_of(breaks_u, options.periodic_u, options.snap),
                      axis_of(breaks_v, options.periodic_v, options.snap)};
     region->domain = {breaks_u.front(), breaks_u.back(), breaks_v.front(), breaks_v.back()};
-    Result<RepairedLoops> repaired = repair_loops(loops, region->lines);
+    Result<RepairedLoops> repaired = repair_loops(loops, region->lines, shared);
     if (!repaired) return repaired.status();
     region->pieces = std::move(repaired->pieces);
     region->starts_inside = repaired->starts_inside;

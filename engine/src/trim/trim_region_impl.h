@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tessera/trim_region.h"
+#include "trim/curve_extractions.h"
 #include "trim/cut_lines.h"
 #include "trim/region_cells.h"
 #include "trim/trim_piece.h"
@@ -19,8 +20,10 @@ class TrimRegion::Impl {
     points,   ///< locate() too
     patches,  ///< all but locate(): `cells` stays empty
   };
+  /// `shared`: extractions of curves that regions share; null: none.
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, std::span<const double> breaks_u,
-                                 std::span<const double> breaks_v, const TrimOptions& options, Use use);
+                                 std::span<const double> breaks_v, const TrimOptions& options, Use use,
+                                 CurveExtractions* shared = nullptr);
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use);
   /// How loops over a grid are repaired.
   static TrimOptions options_of(const PatchGrid& grid);
