@@ -26,8 +26,8 @@ struct LoopPieces {
   bool holds_left = false, holds_right = false;
 };
 
-/// Makes the pieces of a loop. `shared`: extractions to take and to add to; null: none. Errors: unsupported (coordinates beyond 1e100; more than 64 periods), those of
-/// to_bezier(Curve).
+/// Makes the pieces of a loop. `shared`: extractions to take and to add to; null: none. Errors: unsupported
+/// (coordinates beyond 1e100; more than 64 periods).
 Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines,
                                CurveExtractions* shared = nullptr);
 
