@@ -30,10 +30,11 @@ struct CrackCount {
   std::size_t own_non_manifold = 0;
   std::size_t non_manifold = 0;  ///< the others
   bool folded = false;           ///< a patch lies upon itself: triangles where it turns back have no area
-  bool trimmed = false;          ///< loops cut it: triangles at chords below the resolution of floats have no area
+  std::size_t points = 0;        ///< triangles with two corners in one place
+  bool trimmed = false;          ///< loops cut it: corners of needles in a plane may round to a line
   bool good() const {
-    return cracks == 0 && non_manifold == 0 && (folded || trimmed || report.degenerate_triangles == 0) &&
-           report.non_finite_vertices == 0;
+    const bool has_flat = trimmed ? points > 0 : report.degenerate_triangles > 0;
+    return cracks == 0 && non_manifold == 0 && (folded || !has_flat) && report.non_finite_vertices == 0;
   }
 };
 
@@ -113,7 +114,10 @@ inline void count_edges(const Mesh& mesh, const MeetingBorders& borders, CrackCo
   std::vector<Edge> edges;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const std::uint32_t* k = &mesh.indices[3 * t];
-    if (place[k[0]] == place[k[1]] || place[k[1]] == place[k[2]] || place[k[2]] == place[k[0]]) continue;
+    if (place[k[0]] == place[k[1]] || place[k[1]] == place[k[2]] || place[k[2]] == place[k[0]]) {
+      ++count.points;
+      continue;
+    }
     for (int c = 0; c < 3; ++c) {
       const std::uint32_t a = k[c], b = k[(c + 1) % 3];
       const std::uint64_t low = std::min(place[a], place[b]), high = std::max(place[a], place[b]);

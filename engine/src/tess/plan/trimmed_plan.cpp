@@ -66,6 +66,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
   room.limits.sliver = sliver;
   room.limits.room = std::isfinite(room.tolerance) ? room.tolerance - room.given : room.tolerance;
   room.limits.in_cells = options_.angle || options_.camera;
+  room.limits.rounding = {&set_->patches[patch], set_->origin, options_.f64_positions, roundings_[patch]};
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
 }

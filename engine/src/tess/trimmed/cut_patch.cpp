@@ -57,6 +57,7 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   }
   number(collapsed, out);
   refine(limits, chord, out);
+  merge(limits, out);
   measure(limits.segments, chord, out);
   find_border_vertices(borders, limits.domain, out);
 }
@@ -171,6 +172,39 @@ void CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, 
   };
   refiner_.run(out.vertices, out.triangles, band_, is_large, length);
   points_.resize(out.vertices.size(), {std::nan(""), std::nan("")});  // new vertices lie on no border
+}
+
+// Chords may be shorter than the resolution of positions. Vertices in one place are joined by index, so each edge
+// between two triangles stays one; an edge of a loop that becomes a point is no open edge any more.
+void CutPatchMaker::merge(const TrimmedPatch& limits, CutPatch& out) {
+  const auto band = [&] { return std::span(out.triangles).subspan(band_); };
+  if (!merger_.find(limits.rounding, limits.speed, out.vertices, band())) return;
+  const std::uint32_t lone = count_lone_edges(band());
+  numbers_.resize(out.vertices.size());
+  for (std::uint32_t vertex = 0; vertex < numbers_.size(); ++vertex) numbers_[vertex] = merger_.kept(vertex);
+  compact(numbers_, out);
+  const auto is_point = [](const CutPatch::Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
+  band_ -= static_cast<std::size_t>(std::ranges::count_if(std::span(out.triangles).first(band_), is_point));
+  std::erase_if(out.triangles, is_point);
+  out.open_edges -= std::min(out.open_edges, lone - std::min(lone, count_lone_edges(band())));
+}
+
+void CutPatchMaker::compact(std::span<const std::uint32_t> kept, CutPatch& out) {
+  std::vector<std::uint32_t> places(kept.size(), CutPatch::none);
+  std::uint32_t count = 0;
+  for (std::uint32_t vertex = 0; vertex < kept.size(); ++vertex) {
+    if (kept[vertex] != vertex) continue;
+    out.vertices[count] = out.vertices[vertex];
+    points_[count] = points_[vertex];
+    places[vertex] = count++;
+  }
+  out.vertices.resize(count);
+  points_.resize(count);
+  const auto moved = [&](std::uint32_t vertex) { return places[kept[vertex]]; };
+  for (std::uint32_t& pole : poles_)
+    if (pole != CutPatch::none) pole = moved(pole);
+  for (CutPatch::Triangle& triangle : out.triangles)
+    for (std::uint32_t& corner : triangle) corner = moved(corner);
 }
 
 void CutPatchMaker::measure(PatchSegments segments, const ChordBound& chord, CutPatch& out) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "block/patch_trims.h"
@@ -64,6 +65,10 @@ class CutPatchMaker {
   void number(EdgeMask collapsed, CutPatch& out);
   /// Halves the triangles of the band that are too large.
   void refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
+  /// Merges vertices that rounding puts in one place, and leaves out the triangles between them.
+  void merge(const TrimmedPatch& limits, CutPatch& out);
+  /// Leaves out vertices that others replace. `kept`: by vertex, the one that stays.
+  void compact(std::span<const std::uint32_t> kept, CutPatch& out);
   void measure(PatchSegments segments, const ChordBound& chord, CutPatch& out);
   /// The box of a triangle's parameters. A pole has every parameter along its border, so it does not count there.
   struct Box {
@@ -82,6 +87,7 @@ class CutPatchMaker {
   std::array<std::uint32_t, 4> poles_{};  ///< by Side: the vertex of a collapsed border, or none
   std::size_t band_ = 0;                  ///< the first triangle of the band
   BandRefiner refiner_;
+  VertexMerger merger_;
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -10,6 +10,7 @@
 #include "tess/trimmed/patch_sides.h"
 #include "tess/trimmed/piece_chords.h"
 #include "tess/trimmed/speed_bound.h"
+#include "tess/trimmed/vertex_merger.h"
 #include "tessera/geometry.h"
 #include "trim/trim_piece.h"
 
@@ -24,6 +25,7 @@ struct TrimmedPatch {
   double room;             ///< the largest distance of a triangle, with that of the slivers; infinite: no limit
   bool in_cells;           ///< whether triangles must be no wider than cells
   double bend;             ///< see ChordLimits
+  VertexRounding rounding;
   double chord_share = 1;  ///< the largest length of a chord, in cells
 };
 
