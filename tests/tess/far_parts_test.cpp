@@ -275,5 +275,24 @@ TEST(FarParts, OtherVerticesAreAnotherTopology) {
   expect_bounds(set, mesh, plan.bounds());
 }
 
+/// A patch that comes near keeps its doubles until another plan is made; then its vertices change without an edit.
+TEST(FarParts, VerticesThatTurnIntoFloatsAreAnotherTopology) {
+  const std::vector<BezierPatch> patches{closed_body()[0], placed(closed_body(), 1, {2000, 0, 0})[1]};
+  PatchSet set = good(PatchSet::make(patches, {.origin = Vec3{}}));
+  Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.001, .spare = 10}));
+  Mesh mesh = mesh_of(set, plan);
+  const auto move = [&](std::uint32_t patch, double by) {
+    std::vector<Vec3> points;
+    for (const Vec3& p : set.patch(patch).points()) points.push_back(p + Vec3{by, 0, 0});
+    return good(plan.update(set, {std::span(&patch, 1), points}, mesh.views()));
+  };
+  EXPECT_FALSE(move(1, -1996).topology);
+  EXPECT_TRUE(is_f64(plan, 1));
+  EXPECT_EQ(mesh.positions, mesh_of(set, plan).positions);
+  EXPECT_EQ(move(0, 2000).patches, 2u);
+  EXPECT_TRUE(is_f64(plan, 0));
+  EXPECT_FALSE(is_f64(plan, 1));
+}
+
 }  // namespace
 }  // namespace tessera::test

@@ -363,7 +363,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
 
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {
   CertifiedPlan plan;
-  plan.f64_patches_ = options_.f64_patches;
+  plan.set_f64_patches(options_.f64_patches);
   plan.has_f64_positions_ = options_.f64_positions;
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
   if (set_->trims) {

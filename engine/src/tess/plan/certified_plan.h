@@ -43,14 +43,12 @@ class CertifiedPlan {
   const Division& division(std::size_t patch) const { return divisions_[patch]; }
   std::span<const Division> divisions() const { return divisions_; }
   /// The patches that loops cut, by growing patch. Their divisions are empty but for the borders' segments.
-  std::span<const CutPatch> cuts() const { return trimmed_ ? trimmed_->cuts : std::span<const CutPatch>(); }
+  std::span<const CutPatch> cuts() const { return rare_ ? rare_->cuts : std::span<const CutPatch>(); }
   /// Cut patches without triangles, because their chords cross.
-  std::span<const std::uint32_t> crossed() const {
-    return trimmed_ ? trimmed_->crossed : std::span<const std::uint32_t>();
-  }
+  std::span<const std::uint32_t> crossed() const { return rare_ ? rare_->crossed : std::span<const std::uint32_t>(); }
   /// Whether a set has the loops that the plan was made for.
   bool has_trims_of(const PatchSet::Impl& set) const {
-    return trimmed_ ? trimmed_->trims == set.trims : set.trims == nullptr;
+    return rare_ ? rare_->trims == set.trims : set.trims == nullptr;
   }
   std::span<const PatchSegments> segments() const { return segments_; }  ///< segments that each patch needs for itself
   std::size_t first_vertex(std::size_t patch) const { return first_vertex_[patch]; }
@@ -67,8 +65,10 @@ class CertifiedPlan {
   std::span<const float> pixels() const { return pixels_; }  ///< empty if no pixels were set
   /// `[patch]`: 1 if its vertices come from the set's double control points, see F64Points; empty if no patch's do.
   /// Borders of one edge then have the same positions only after VertexCopies are made.
-  std::span<const std::uint8_t> f64_patches() const { return f64_patches_; }
-  bool is_f64(std::size_t patch) const { return !f64_patches_.empty() && f64_patches_[patch]; }
+  std::span<const std::uint8_t> f64_patches() const {
+    return rare_ ? rare_->f64_patches : std::span<const std::uint8_t>();
+  }
+  bool is_f64(std::size_t patch) const { return !f64_patches().empty() && f64_patches()[patch]; }
   /// Whether the mesh has positions in double; implies is_f64() of all patches.
   bool has_f64_positions() const { return has_f64_positions_; }
 
@@ -91,6 +91,7 @@ class CertifiedPlan {
     bool reversed = false, is_point = false;  ///< a point: `from` is a corner
   };
   void lay_out();
+  void set_f64_patches(std::span<const std::uint8_t> patches);
   /// Counts open_edges() of a mesh with cut patches. `edges`: those of the planner, after welding.
   void count_open_edges_beside_loops(const SharedEdges& edges);
   std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
@@ -100,15 +101,16 @@ class CertifiedPlan {
   /// `[patch]`, and the number of all at the end.
   std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<float> bounds_, angles_, pixels_;
-  struct Trimmed {
+  /// Members that few plans have.
+  struct Rare {
+    std::vector<std::uint8_t> f64_patches;
     std::shared_ptr<const PatchTrims> trims;  ///< those of the set
     std::vector<CutPatch> cuts;
     std::vector<std::uint32_t> crossed;
   };
-  std::unique_ptr<Trimmed> trimmed_;  ///< null if no patch is cut
+  std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, and no vertices come from doubles
   std::uint32_t open_edges_ = 0;
   bool has_f64_positions_ = false;
-  std::vector<std::uint8_t> f64_patches_;
   std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
   std::vector<std::uint32_t> corner_sources_;  ///< `[corner]`: itself if it owns its vertex; empty if nothing is shared
   std::vector<BorderSource> border_sources_;   ///< `[border]`

@@ -7,6 +7,12 @@
 
 namespace tessera::inline abi_0_1 {
 
+void CertifiedPlan::set_f64_patches(std::span<const std::uint8_t> patches) {
+  if (patches.empty()) return;
+  if (!rare_) rare_ = std::make_unique<Rare>();
+  rare_->f64_patches.assign(patches.begin(), patches.end());
+}
+
 void CertifiedPlan::lay_out() {
   const std::size_t patches = divisions_.size();
   for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);

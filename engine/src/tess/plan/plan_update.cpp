@@ -202,7 +202,7 @@ void PlanUpdate::take_bounds(CertifiedPlan& plan) const {
 
 CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
   CertifiedPlan plan;
-  plan.f64_patches_ = of.plan.f64_patches_;
+  plan.set_f64_patches(of.plan.f64_patches());
   plan.has_f64_positions_ = of.plan.has_f64_positions_;
   plan.segments_ = of.plan.segments_;
   plan.bounds_ = of.plan.bounds_;

@@ -101,7 +101,7 @@ void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
     const std::uint32_t edge = edges_.edge(border / 4, all_sides[border % 4]);
     if (edge != SharedEdges::none && whole[edge] == CutPatch::none) whole[edge] = border;
   }
-  for (CutPatch& cut : plan.trimmed_->cuts) {
+  for (CutPatch& cut : plan.rare_->cuts) {
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(cut.patch, side);
       if (edge == SharedEdges::none || whole[edge] == CutPatch::none) continue;
@@ -129,10 +129,10 @@ Status CertifiedPlanner::choose_cut(const Request& request, std::span<const doub
 
 Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
-  plan.trimmed_ = std::make_unique<CertifiedPlan::Trimmed>();
-  plan.trimmed_->trims = set_->trims;
-  plan.trimmed_->cuts.resize(cuts.size());
-  for (std::size_t c = 0; c < cuts.size(); ++c) plan.trimmed_->cuts[c].patch = cuts[c].patch;
+  if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
+  plan.rare_->trims = set_->trims;
+  plan.rare_->cuts.resize(cuts.size());
+  for (std::size_t c = 0; c < cuts.size(); ++c) plan.rare_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
   std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
@@ -145,10 +145,10 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
       for (std::size_t c = begin; c < end; ++c) {
         const std::size_t k = cuts[c].patch;
         if (excess[c] <= 1 && before[k] == plan.divisions_[k]) continue;
-        const CutRoom room = room_of(plan.trimmed_->cuts[c], request, plan);
+        const CutRoom room = room_of(plan.rare_->cuts[c], request, plan);
         maker.make(set_->trims->regions[cuts[c].region], face_sides_[cuts[c].region], cuts[c], room.limits,
-                   plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.trimmed_->cuts[c]);
-        excess[c] = bound_cut(room, plan.trimmed_->cuts[c], plan);
+                   plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.rare_->cuts[c]);
+        excess[c] = bound_cut(room, plan.rare_->cuts[c], plan);
       }
     };
     const Execution quiet{.cancel = execution.cancel};
@@ -156,14 +156,14 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     bool keeps = true;
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       if (excess[c] <= 1) continue;
-      if (!(plan.trimmed_->cuts[c].sliver < request.tolerance)) return too_rough(request, cuts[c].patch);
+      if (!(plan.rare_->cuts[c].sliver < request.tolerance)) return too_rough(request, cuts[c].patch);
       keeps = false;
       shares[c] *= 0.85 / excess[c];
     }
     if (!keeps) continue;
     plan.count_open_edges_beside_loops(edges_);
     for (const CutPatch& cut : plan.cuts())
-      if (cut.is_crossed) plan.trimmed_->crossed.push_back(cut.patch);
+      if (cut.is_crossed) plan.rare_->crossed.push_back(cut.patch);
     return {};
   }
   const auto worst = static_cast<std::size_t>(std::ranges::max_element(excess) - excess.begin());
