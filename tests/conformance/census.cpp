@@ -71,10 +71,10 @@ std::size_t surfaces_stated(const std::filesystem::path& path) {
   if (extension == ".bv") return patches_of_bv(text);
   if (extension == ".rib") return patches_of_rib(text);
   if (extension == ".obj") return matches(text, R"(^surf\s)");
-  // Spline surfaces, planes, cylinders, spheres, cones and tori; trimmed splines and planes.
+  // Spline surfaces, planes, cylinders, spheres, cones and tori; trimmed ones of all these but tori, and extrusions.
   if (extension == ".g2")
     return matches(text, R"(^(200|250|260|270|280|290) 1 0 \d+\s*$)") +
-           matches(text, R"(^210 1 0 \d+\s+(200|250)\s*$)");
+           matches(text, R"(^210 1 0 \d+\s+(200|250|260|261|270|280)\s*$)");
   throw std::runtime_error("no census of " + extension);
 }
 

@@ -120,7 +120,10 @@ TEST_F(WriteModel, EveryFileOfOthersComesBack) {
         ModelSurface named = model->surfaces[k];
         named.name = read.surfaces[k].name;  // names have tests of their own
         expect_same_patches(named, read.surfaces[k], file.string() + " surface " + std::to_string(k));
-        EXPECT_EQ(read.surfaces[k].trims, named.trims) << file;
+        // Quadrics may become nets, whose loops are those of the grid.
+        const auto is_quadric = [](const ModelSurface& of) { return std::holds_alternative<QuadricPiece>(of.surface); };
+        const bool by_grid = is_quadric(named) && !is_quadric(read.surfaces[k]);
+        EXPECT_EQ(read.surfaces[k].trims, by_grid ? value_of(grid_trims(named)) : named.trims) << file;
         trims += named.trims->size();
       }
     }
