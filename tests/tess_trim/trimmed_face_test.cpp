@@ -238,13 +238,13 @@ TEST(TrimmedFace, FarFromTheOriginKeepsItsBoundWithoutCracks) {
     const std::vector<TrimLoop> loops{circle(centre, 0.6, true)};
     Face face(wavy(198), loops);
     face.set = value_of(make_patch_set(face.model, {.origin = Vec3{}}));
-    const Mesh mesh = face.mesh(2e-3);
-    const Tessellation plan = value_of(Tessellation::make(face.set, {.tolerance = 2e-3}));
+    const Mesh mesh = face.mesh(1e-3);
+    const Tessellation plan = value_of(Tessellation::make(face.set, {.tolerance = 1e-3}));
     const auto is_f64 = proven_mesh_of(plan).plan().f64_patches();
     ASSERT_EQ(is_f64.size(), 12u);
     EXPECT_FALSE(is_f64[0]);
     EXPECT_TRUE(is_f64[11]);
-    EXPECT_LE(face.bound, 2e-3);
+    EXPECT_LE(face.bound, 1e-3);
     EXPECT_EQ(euler_number(expect_joined(face, mesh)), 0);
     const auto [of_mesh, of_face] = distances(face, outside_of({{centre, 0.6}}), mesh);
     EXPECT_LE(of_mesh, face.bound);
