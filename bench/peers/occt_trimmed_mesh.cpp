@@ -17,12 +17,14 @@
 #include <Standard_Version.hxx>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
 #include "peers/face_errors.h"
 #include "peers/interleaved.h"
@@ -36,10 +38,11 @@ namespace tessera::bench {
 namespace {
 
 constexpr char usage[] =
-    "tessera_peer_occt_trimmed_mesh [--only NAME] [--no-sides] [--no-search] [FILE...]\n\n"
+    "tessera_peer_occt_trimmed_mesh [--only NAME] [--points N] [--no-sides] [--no-search] [FILE...]\n\n"
     "Meshes of trimmed CAD files beside OpenCASCADE's at equal measured error, one thread; areas and sides of their\n"
     "faces. Without files: those of the folder TESSERA_TEST_DATA. About 10 minutes.\n"
     "  --only NAME  files whose names contain NAME\n"
+    "  --points N   measures meshes at about N points in each direction [12000]\n"
     "  --no-sides   without the check of sides\n"
     "  --no-search  at equal tolerance only\n"
     "Exit status 1 if a bound does not hold.\n";
@@ -60,11 +63,12 @@ constexpr const char* default_files[] = {"step_cad/as1-oc-214.stp",
                                          "brep_occt/hammer.brep",
                                          "iges_bodies/mug_solid.igs",
                                          "iges_bodies/wrench.iges"};
-constexpr std::size_t samples = 12000, points_per_face = 10000;
+constexpr std::size_t points_per_face = 10000;
 constexpr double max_seconds = 60;  // for one of OpenCASCADE's meshes
 
 struct Options {
   std::string only;
+  std::size_t points = 12000;
   bool sides = true, search = true;
   std::vector<std::filesystem::path> files;
 };
@@ -78,11 +82,8 @@ struct Measured {
 
 class Comparison {
  public:
-  explicit Comparison(const TrimmedCase& one)
-      : case_(one),
-        set_(test::value_of(make_patch_set(one.model))),
-        meter_(one, samples),
-        size_(set_.box().diagonal()) {
+  Comparison(const TrimmedCase& one, std::size_t points)
+      : case_(one), set_(test::value_of(make_patch_set(one.model))), meter_(one, points), size_(set_.box().diagonal()) {
     for (const auto& face : one.faces) {
       edge_gap_ = std::max(edge_gap_, face->edge_gap());
       wire_gap_ = std::max(wire_gap_, face->wire_gap());
@@ -227,7 +228,7 @@ class Comparison {
 
 bool report(const std::filesystem::path& file, const Options& options) {
   const TrimmedCase one = read_case(file);
-  const Comparison comparison(one);
+  const Comparison comparison(one, options.points);
   comparison.print_head();
   if (options.sides) {
     const SideCheck sides = check_sides(one, points_per_face);
@@ -278,6 +279,13 @@ int main(int argc, char** argv) {
       options.search = false;
     } else if (std::strcmp(argv[k], "--only") == 0 && k + 1 < argc) {
       options.only = argv[++k];
+    } else if (std::strcmp(argv[k], "--points") == 0 && k + 1 < argc) {
+      const std::string_view text = argv[++k];
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), options.points);
+      if (error != std::errc() || end != text.data() + text.size() || options.points == 0) {
+        std::fprintf(stderr, "--points is a number above 0, not '%s'\n", argv[k]);
+        return 2;
+      }
     } else if (argv[k][0] == '-') {
       std::fprintf(stderr, "unknown option '%s'\n%s", argv[k], tessera::bench::usage);
       return 2;
