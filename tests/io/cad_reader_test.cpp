@@ -2,8 +2,11 @@
 
 #include "io/cad/cad_reader.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstring>
@@ -43,6 +46,20 @@ class Variable {
   std::optional<std::string> before_;
 };
 
+/// Keeps other runs of this program from looking for readers beside it, or putting one there.
+class AloneBeside {
+ public:
+  explicit AloneBeside(const fs::path& folder) : file_(::open((folder / "alone").c_str(), O_CREAT | O_RDWR, 0600)) {
+    EXPECT_EQ(::flock(file_, LOCK_EX), 0);
+  }
+  AloneBeside(const AloneBeside&) = delete;
+  AloneBeside& operator=(const AloneBeside&) = delete;
+  ~AloneBeside() { ::close(file_); }
+
+ private:
+  int file_;
+};
+
 std::string as_size(std::uint64_t size) {
   std::string bytes(sizeof size, '\0');
   std::memcpy(bytes.data(), &size, sizeof size);
@@ -53,6 +70,8 @@ class CadReader : public testing::Test {
  protected:
   ~CadReader() override { EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child was not collected"; }
 
+  /// The folder of this program.
+  static fs::path own_folder() { return fs::canonical("/proc/self/exe").parent_path(); }
   /// A reader that runs this script of the shell.
   std::string reader(const std::string& script, const std::string& name = "reader") const {
     const std::string path = folder_.file(name, "#!/bin/sh\n" + script + "\n");
@@ -202,6 +221,7 @@ TEST_F(CadReader, CancellingEndsIt) {
 }
 
 TEST_F(CadReader, IsLookedForInThisOrder) {
+  const AloneBeside alone(own_folder());
   const std::string named = reader("exit 11", "named"), other = reader("exit 12", "other");
   fs::create_directory(folder_ / "bin");
   const std::string third = reader("exit 13", "bin/tessera-cad-reader");
@@ -214,7 +234,7 @@ TEST_F(CadReader, IsLookedForInThisOrder) {
   const Variable none("TESSERA_CAD_READER", "");
   expect("", StatusCode::internal, "the CAD reader " + third + " ended without a greeting (exit status 13)");
   // Beside this program.
-  const fs::path beside = fs::canonical("/proc/self/exe").parent_path() / "tessera-cad-reader";
+  const fs::path beside = own_folder() / "tessera-cad-reader";
   if (fs::exists(beside)) GTEST_SKIP() << beside << " is in the way";
   fs::copy_file(other, beside);
   expect("", StatusCode::internal, "the CAD reader " + beside.string() + " ended without");
@@ -227,6 +247,7 @@ TEST_F(CadReader, IsLookedForInThisOrder) {
 }
 
 TEST_F(CadReader, ItsLackIsAnErrorThatSaysWhatToDo) {
+  const AloneBeside alone(own_folder());
   const Variable none("TESSERA_CAD_READER", ""), path("PATH", folder_.path().string());
   folder_.file("tessera-cad-reader", "not executable, which PATH passes over");
   for (const Result<Model>& read : {read_cad(part_), read_model(part_)})

@@ -147,7 +147,8 @@ const T* MeshTables::hold(const AlignedVector<T>& made) {
   float* const kept = room_.begin;
   room_.begin += floats;
   room_.floats -= floats;
-  return static_cast<const T*>(std::memcpy(kept, made.data(), sizeof(T) * made.size()));
+  if (!made.empty()) std::memcpy(kept, made.data(), sizeof(T) * made.size());
+  return reinterpret_cast<const T*>(kept);
 }
 
 void MeshTables::add_parameters(Segments along) {
