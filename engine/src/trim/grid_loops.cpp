@@ -20,10 +20,7 @@ class ToGrid {
  public:
   explicit ToGrid(const QuadricPiece& piece) : profile_(profiles(piece.quadric().kind())), range_(piece.range()) {}
 
-  bool is_identity() const {
-    const auto is_arc = [](Profile profile) { return profile == Profile::circle || profile == Profile::hyperbola; };
-    return !is_arc(profile_.u) && !is_arc(profile_.v);
-  }
+  bool is_identity() const { return !is_arc(profile_.u) && !is_arc(profile_.v); }
 
   Result<Curve> mapped(const Curve& curve) const {
     const Result<BezierPieces> pieces = to_bezier(curve);

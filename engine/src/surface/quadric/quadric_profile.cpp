@@ -137,7 +137,7 @@ double profile_fraction(Profile profile, double from, double to, double t) {
 }
 
 GridParameter grid_parameter(Profile profile, double from, double to, double t) {
-  if (profile != Profile::circle && profile != Profile::hyperbola) return {t, 1};
+  if (!is_arc(profile)) return {t, 1};
   const SegmentedRange range(profile, from, to);
   const double k = range.segment(t), a = range.begin(k), b = range.begin(k + 1);
   const double s = profile_fraction(profile, a, b, t), half = 0.5 * (t - 0.5 * (a + b)), quarter = 0.25 * (b - a);
@@ -147,7 +147,7 @@ GridParameter grid_parameter(Profile profile, double from, double to, double t) 
 }
 
 double canonical_parameter(Profile profile, double from, double to, double t) {
-  if (profile != Profile::circle && profile != Profile::hyperbola) return t;
+  if (!is_arc(profile)) return t;
   const SegmentedRange range(profile, from, to);
   const double k = range.segment(t), a = range.begin(k), b = range.begin(k + 1);
   return profile_parameter(profile, a, b, t == b ? 1 : (t - a) / (b - a));

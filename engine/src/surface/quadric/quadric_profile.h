@@ -30,6 +30,9 @@ ProfileValue profile_value(Profile profile, double t, int order = 0);
 /// Returns the canonical point, bilinear in the two directions' values. `sign` is 1 on sheet 0, -1 on sheet 1.
 Vec3 canonical_point(const Quadric& quadric, double sign, const ProfileValue& u, const ProfileValue& v);
 
+/// Whether segments of the profile have a rational parameter of their own.
+constexpr bool is_arc(Profile profile) { return profile == Profile::circle || profile == Profile::hyperbola; }
+
 /// A range of t cut into Bezier segments of equal width: their number, and where segment k begins. The ends are exact.
 /// Beyond them, further segments of the same width follow.
 struct SegmentedRange {
