@@ -40,8 +40,8 @@ class RetracedPairs {
         break;
       }
     }
-    if (std::ranges::find(dropped_, true) == dropped_.end()) return 0;
     const auto count = static_cast<std::size_t>(std::count(dropped_.begin(), dropped_.end(), true));
+    if (count == 0) return 0;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < dropped_.size(); ++k) {
       if (dropped_[k]) continue;
