@@ -13,7 +13,6 @@ namespace tessera {
 namespace {
 
 using test::Quad;
-using test::value_of;
 
 double error(Quad a, Quad b) { return static_cast<double>(a > b ? a - b : b - a); }
 
@@ -77,7 +76,7 @@ TEST(MonotonePieces, FollowRandomCurves) {
   std::size_t count = 0;
   for (int k = 0; k < 300; ++k) {
     const TrimLoop loop = test::random_loop(random);
-    const LoopPieces made = value_of(loop_pieces(loop, 7, lines()));
+    const LoopPieces made = test::pieces_of(loop, 7, lines());
     check(loop, made.pieces);
     if (HasFatalFailure()) return;
     EXPECT_EQ(made.gaps, 0u);
@@ -88,7 +87,7 @@ TEST(MonotonePieces, FollowRandomCurves) {
 }
 
 TEST(MonotonePieces, EndsOnLinesHaveTheirNumber) {
-  const LoopPieces made = value_of(loop_pieces(test::circle({0.5, 0.5}, 0.4), 0, lines()));
+  const LoopPieces made = test::pieces_of(test::circle({0.5, 0.5}, 0.4), 0, lines());
   int on_lines = 0;
   for (const TrimPiece& piece : made.pieces) on_lines += lines().u.is_line(piece.end().u);
   EXPECT_EQ(on_lines, 6);                 // two for each inner line that it crosses
@@ -96,7 +95,7 @@ TEST(MonotonePieces, EndsOnLinesHaveTheirNumber) {
 }
 
 TEST(MonotonePieces, CutLinesStayExact) {
-  const LoopPieces made = value_of(loop_pieces(test::polygon({{0.1, 0.2}, {0.9, 0.31}, {0.4, 0.8}}), 0, lines()));
+  const LoopPieces made = test::pieces_of(test::polygon({{0.1, 0.2}, {0.9, 0.31}, {0.4, 0.8}}), 0, lines());
   EXPECT_EQ(made.pieces.size(), 4u + 3 + 3);  // the last side passes through (0.25, 0.5)
   for (const TrimPiece& piece : made.pieces) {
     EXPECT_TRUE(piece.exact_line);
@@ -107,7 +106,7 @@ TEST(MonotonePieces, CutLinesStayExact) {
 TEST(MonotonePieces, CurvesAlongALineMoveOntoIt) {
   const double near = 0.75 + 1e-14;
   const LoopPieces made =
-      value_of(loop_pieces(test::polygon({{near, 0.1}, {near, 0.4}, {0.9, 0.4}, {0.9, 0.1}}), 0, lines()));
+      test::pieces_of(test::polygon({{near, 0.1}, {near, 0.4}, {0.9, 0.4}, {0.9, 0.1}}), 0, lines());
   EXPECT_EQ(made.pieces.front().start(), (ParameterPoint{0.75, 0.1}));
   EXPECT_EQ(made.pieces.front().end(), (ParameterPoint{0.75, 0.4}));
   EXPECT_GE(made.pieces.front().error.u, 0.9e-14);

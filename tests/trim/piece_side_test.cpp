@@ -13,7 +13,6 @@ namespace tessera {
 namespace {
 
 using test::Quad;
-using test::value_of;
 
 const CutLines& lines() {
   static const CutLines all{{{-10, 10}, false, 0}, {{-10, 10}, false, 0}};
@@ -43,7 +42,7 @@ TEST(PieceSide, AgreesWithQuadrupleNumbersBeyondItsReach) {
   std::mt19937 random(1);
   int near = 0, decided = 0;
   for (int k = 0; k < 10; ++k) {
-    for (const TrimPiece& piece : value_of(loop_pieces(test::random_loop(random), 0, lines())).pieces) {
+    for (const TrimPiece& piece : test::pieces_of(test::random_loop(random), 0, lines()).pieces) {
       const test::QuadBezier quad = in_quad(piece.curve);
       const ParameterPoint most = reach(piece);
       for (int i = 0; i < 60; ++i) {

@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <random>
 #include <vector>
 
 #include "support/synthetic_sets.h"
 #include "tessera/trim_loop.h"
+#include "trim/loop_pieces.h"
 
 namespace tessera::test {
 
@@ -72,6 +74,11 @@ inline TrimLoop random_loop(std::mt19937& random, int most_points = 12) {
   knots.insert(knots.end(), static_cast<std::size_t>(degree) + 1, knots.back() + 1);
   if (random() % 2 == 0) return {{value_of(Curve::nurbs(degree, points, weights, knots))}};
   return {{value_of(Curve::b_spline(degree, points, knots))}};
+}
+
+inline LoopPieces pieces_of(const TrimLoop& loop, std::uint32_t index, const CutLines& lines) {
+  CurveExtractions extractions;
+  return value_of(loop_pieces(loop, index, lines, extractions));
 }
 
 }  // namespace tessera::test

@@ -311,9 +311,8 @@ class LoopBuilder {
 }  // namespace
 
 Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines,
-                               CurveExtractions* shared) {
-  CurveExtractions own;
-  return LoopBuilder(loop, index, lines, shared ? *shared : own).build();
+                               CurveExtractions& extractions) {
+  return LoopBuilder(loop, index, lines, extractions).build();
 }
 
 }  // namespace tessera::inline abi_0_1

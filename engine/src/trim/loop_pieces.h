@@ -26,9 +26,9 @@ struct LoopPieces {
   bool holds_left = false, holds_right = false;
 };
 
-/// Makes the pieces of a loop. `shared`: extractions to take and to add to; null: none. Errors: unsupported
-/// (coordinates beyond 1e100; more than 64 periods).
+/// Makes the pieces of a loop. `extractions`: those to take and to add to. Errors: unsupported (coordinates beyond
+/// 1e100; more than 64 periods).
 Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines,
-                               CurveExtractions* shared = nullptr);
+                               CurveExtractions& extractions);
 
 }  // namespace tessera::inline abi_0_1

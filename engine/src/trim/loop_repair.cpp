@@ -61,7 +61,7 @@ class LoopRepair {
   Result<RepairedLoops> repair() {
     bool all_holes = true;
     for (std::size_t k = 0; k < loops_.size(); ++k) {
-      Result<LoopPieces> loop = loop_pieces(loops_[k], static_cast<std::uint32_t>(k), lines_, &extractions_);
+      Result<LoopPieces> loop = loop_pieces(loops_[k], static_cast<std::uint32_t>(k), lines_, extractions_);
       if (!loop) return named(loop.status(), k);
       tell_gaps(k, *loop);
       std::erase_if(loop->pieces, [](const TrimPiece& piece) { return piece.start() == piece.end(); });
