@@ -1,13 +1,17 @@
 #pragma once
-// A model: the named, placed and trimmed surfaces of a file.
+// A model: the named, placed and trimmed surfaces of a file, and the shapes that they are faces of.
 //
 // Memory: sets and grids own theirs; a model is not kept by what is made of it. Threads: const calls on a model from
 // any number of threads, if the functions of its surfaces allow it; make_patch_set() runs in the caller's TBB arena.
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "tessera/brep.h"
 #include "tessera/convert.h"
 #include "tessera/detail/shared.h"
 #include "tessera/geometry.h"
@@ -22,18 +26,46 @@ namespace tessera::inline abi_0_1 {
 /// A named surface, its placement in the model, and the loops that trim it. Grids and rays ignore the loops so far:
 /// they see each patch of a set as a whole. Copies share everything.
 struct ModelSurface {
-  Shared<std::string> name;                  ///< may be empty
-  Surface surface;                           ///< in its own space
-  Shared<Affine> placement = {};             ///< from its own space to the model's
-  Shared<std::vector<TrimLoop>> trims = {};  ///< what is kept of it, in its own parameters; none: all
+  Shared<std::string> name;                    ///< may be empty
+  Surface surface;                             ///< in its own space
+  Shared<Affine> placement = {};               ///< from its own space to the model's, or its shape's
+  Shared<std::vector<TrimLoop>> trims = {};    ///< what is kept of it, in its own parameters; none: all
+  Shared<std::vector<TrimLoop>> outline = {};  ///< without trims: loops along the domain's sides, for their coedges
+  std::optional<Colour> colour = {};           ///< as the file states it
 };
 
-/// The surfaces of a file, or those that a program makes.
+/// A part that the file states once, and that may be placed many times: faces and the edges that they share, in the
+/// part's own space. Memory: about 300 bytes per edge beside its faces.
+struct Shape {
+  Shared<std::string> name;          ///< may be empty
+  std::vector<ModelSurface> faces;   ///< in the order of the file; coedges of their loops are indices into `edges`
+  std::vector<BrepVertex> vertices;  ///< may be none
+  std::vector<BrepEdge> edges;       ///< may be none
+  std::vector<Shell> shells = {};    ///< a face may be in none
+  std::uint32_t solid_count = 0;     ///< solids are numbers, in Shell::solid
+};
+
+/// A shape at its place in the model. Its faces are the surfaces first_surface + k, for each face k of the shape.
+struct Instance {
+  std::uint32_t shape = 0;            ///< index into Model::shapes
+  std::size_t first_surface = 0;      ///< index into Model::surfaces
+  Shared<std::string> name = {};      ///< may be empty
+  Shared<Affine> placement = {};      ///< from the shape's space to the model's
+  std::optional<Colour> colour = {};  ///< for faces without a colour of their own
+};
+
+/// The surfaces of a file, or those that a program makes. With instances, `surfaces` holds the instances' faces, as
+/// placed_faces() of topology.h lists them, and a shape can be meshed once for all its instances. Without, `surfaces` is
+/// all.
 struct Model {
   std::string name;                    ///< may be empty
   std::vector<ModelSurface> surfaces;  ///< in the order of the file
   /// Parts of the file that this model lacks, one sentence each, with file and line: "part.obj:12: sp is not read".
   std::vector<std::string> warnings = {};
+  std::vector<Shape> shapes = {};        ///< if the file's format has edges
+  std::vector<Instance> instances = {};  ///< of all shapes
+  std::string unit = {};                 ///< of all lengths: "mm"; empty: none is stated
+  std::string file_unit = {};            ///< in which the file states them, in its words: "inch"; empty: as above
 };
 
 /// Returns `status`, an error, with the message "surface 3 (rim): ..." and the index 3. `surface` is below

@@ -6,6 +6,7 @@
 
 #include "tessera/bezier_operations.h"
 #include "tessera/bezier_patch.h"
+#include "tessera/brep.h"
 #include "tessera/convert.h"
 #include "tessera/coons_patch.h"
 #include "tessera/curve.h"
@@ -28,6 +29,7 @@
 #include "tessera/surface.h"
 #include "tessera/tensor_patch.h"
 #include "tessera/tessellation.h"
+#include "tessera/topology.h"
 #include "tessera/trim_loop.h"
 #include "tessera/trim_region.h"
 #include "tessera/version.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tessera/brep.h"
 #include "tessera/curve.h"
 
 #pragma GCC visibility push(default)
@@ -16,7 +17,8 @@ namespace tessera::inline abi_0_1 {
 struct TrimLoop {
   std::vector<Curve> curves;                                           ///< each begins where the one before it ends
   bool hole = false;                                                   ///< if false, the outside is cut away
-  friend bool operator==(const TrimLoop&, const TrimLoop&) = default;  ///< by the curves, in order, and by `hole`
+  std::vector<Coedge> coedges = {};                                    ///< of a Shape's face: the edge of each curve
+  friend bool operator==(const TrimLoop&, const TrimLoop&) = default;  ///< by the curves, in order, and the rest
 };
 
 /// A fault of a loop, and how it was repaired.
