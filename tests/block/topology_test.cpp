@@ -9,6 +9,7 @@
 
 #include "support/errors.h"
 #include "support/synthetic_sets.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {
@@ -179,6 +180,24 @@ TEST(Topology, AParameterCurvePairsArcsThatAreDividedDifferently) {
   on_wall.coedges[0].parameter = value_of(Curve::nurbs(1, t_points, t_weights, t_knots));
   shape.faces[1].outline = std::vector{on_wall};
   EXPECT_LT(value_of(edge_gaps(shape, 33))[0], 1e-15);
+}
+
+/// A loop may cross the seam of a closed surface; a seam's two curves lie on its two sides.
+TEST(Topology, LoopsBeyondTheDomainOfAClosedSurfaceAreMeasuredWithinIt) {
+  const BSplineSurface ball = value_of(make_nurbs_sphere({}, 2));
+  const Domain d = ball.domain();
+  const double width = d.u1 - d.u0;
+  const auto across = [&](double shift) {
+    return TrimLoop{
+        {line({d.u_at(0.75) + shift, d.v_at(0.5), 0}, {d.u_at(1.25) + shift, d.v_at(0.5), 0})}, false, {{0}}};
+  };
+  Shape shape;
+  shape.edges.resize(1);
+  for (const double turns : {0.0, -1.0, 2.0})
+    shape.faces.push_back({"ball", ball, {}, std::vector<TrimLoop>{across(turns * width)}});
+  EXPECT_LT(value_of(edge_gaps(shape, 9))[0], 1e-14);
+  shape.faces[1].trims = std::vector<TrimLoop>{across(0.25 * width)};
+  EXPECT_GT(value_of(edge_gaps(shape, 9))[0], 1);
 }
 
 TEST(Topology, IdsOfNothingAreRefused) {
