@@ -70,15 +70,16 @@ void compare(const TopoDS_Face& given, int count, std::mt19937_64& random, Count
   const Result<FaceBox> box = face_box(face);
   TopLoc_Location ignored;
   const Result<FaceSurface> made = box ? face_surface(BRep_Tool::Surface(face, ignored), box->domain) : box.status();
-  const Result<std::vector<TrimLoop>> loops = made ? face_loops(face, *box, made->parameters) : made.status();
-  if (!loops) {
+  const Result<FaceLoops> all = made ? face_loops(face, *box, made->parameters, ShapeEdges(face)) : made.status();
+  if (!all) {
     ++counts.unread;
     return;
   }
+  const std::vector<TrimLoop> loops = all->whole ? std::vector<TrimLoop>() : all->loops;
   const Result<PatchGrid> grid = to_bezier(Surface(made->surface));
   ASSERT_TRUE(grid.ok()) << where;
   const Result<TrimRegion> region =
-      TrimRegion::make(*loops, grid->breaks_u(), grid->breaks_v(),
+      TrimRegion::make(loops, grid->breaks_u(), grid->breaks_v(),
                        {.periodic_u = is_closed(made->surface, true), .periodic_v = is_closed(made->surface, false)});
   ASSERT_TRUE(region.ok()) << where << region.status().message();
   ++counts.faces;
@@ -99,7 +100,7 @@ void compare(const TopoDS_Face& given, int count, std::mt19937_64& random, Count
     ++counts.points;
     if ((state == TopAbs_IN) == (found == TrimSide::inside)) continue;
     // Its polygons follow the curves to within some hundredths of a per cent of the face; so do its tolerances.
-    const bool beside = distance_from(*loops, ours, uv[0], uv[1]) < 5e-3;
+    const bool beside = distance_from(loops, ours, uv[0], uv[1]) < 5e-3;
     ++(beside ? counts.beside : counts.wrong);
     if (!beside && counts.wrong <= 5)
       std::printf("%s: (%.17g, %.17g) is %s\n", where.c_str(), u, v, state == TopAbs_IN ? "inside" : "outside");

@@ -18,8 +18,21 @@
 // - A face that the file reverses has u and v swapped, so that normals of solids point outwards.
 // - `placement` is the face's place in the assembly; `name` is the product's (STEP), the entity's (IGES) or empty
 //   (BREP).
+// - `colour` is that of the face, or else of the shell, solid or part that holds it, in STEP and IGES. Colours of single
+//   instances in STEP are left out.
 // - A face that can't be read is left out, and a warning says why: degrees above max_degree, an unbounded plane, input
 //   that OpenCASCADE rejects (such as weights that are not positive).
+//
+// Shapes: each part that stands at several places is read once and has an instance for each place. A part is as much of
+// the file as stands together at each of its places: a product of STEP that is no assembly; in other files, all that no
+// part of it repeats.
+//
+// - Edges and vertices are shared where the file's faces share them; faces of IGES's trimmed surfaces share none. An
+//   edge's curve is exact as surfaces are, and its loops' curves run at the same parameter, or at the one that
+//   Coedge::parameter states exactly.
+// - A face that is no less than its rectangle names its edges in `outline`, others in `trims`.
+// - Tolerances are the file's, and no bounds: see edge_gaps() of topology.h.
+// - `unit` is "mm" for STEP and IGES, and empty for BREP; `file_unit` is the file's word for its unit.
 //
 // Process: OpenCASCADE may crash on damaged files and keeps global state, so each call runs the program as a child
 // process, with bounds on memory (512 MiB plus 256 times the file) and on computing time (120 seconds plus one for

@@ -15,6 +15,7 @@ class Arcs {
 
   double from() const { return from_; }
   double to() const { return to_; }
+  double step() const { return (to_ - from_) / count_; }  ///< the angle of each arc
 
   /// A control point of the circle, (cosine, sine) as coordinates in the plane.
   struct Point {

@@ -71,9 +71,17 @@ void take_messages(std::string& last_failure) {
 
 void set_unit() { Interface_Static::SetCVal("xstep.cascade.unit", "MM"); }
 
+Colour colour_of(const Quantity_Color& colour, double alpha) {
+  double red = 0, green = 0, blue = 0;
+  colour.Values(red, green, blue, Quantity_TOC_sRGB);
+  const auto part = [](double value) { return value > 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F; };
+  return {part(red), part(green), part(blue), part(alpha)};
+}
+
 CadFile transferred(const XSControl_Reader& reader) {
   CadFile file;
   file.shape = reader.OneShape();
+  file.unit = "mm";
   const handle<Interface_InterfaceModel> model = reader.Model();
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   for (int k = 1; k <= process->NbMapped(); ++k) {

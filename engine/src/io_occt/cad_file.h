@@ -1,12 +1,17 @@
 #pragma once
 // A file as OpenCASCADE reads it.
 
+#include <opencascade/NCollection_DataMap.hxx>
+#include <opencascade/Quantity_Color.hxx>
+#include <opencascade/TopTools_ShapeMapHasher.hxx>
 #include <opencascade/TopoDS_Shape.hxx>
 #include <opencascade/XSControl_Reader.hxx>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
+#include "tessera/brep.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
@@ -17,8 +22,13 @@ struct CadFile {
   TopoDS_Shape shape;
   std::unordered_map<const void*, std::string> names;   ///< of products and entities
   std::unordered_map<const void*, std::string> labels;  ///< of faces: "#51" in STEP, "D113" in IGES
-  std::vector<std::string> complaints;                  ///< OpenCASCADE's messages about parts that it cannot read
-  std::string contents;                                 ///< for a file without faces: what it holds instead, or empty
+  std::unordered_map<const void*, Colour> colours;      ///< of entities
+  std::unordered_set<const void*> products;             ///< parts and assemblies of parts
+  /// Names of parts in an assembly; the key is the part at its place in the assembly that holds it.
+  NCollection_DataMap<TopoDS_Shape, std::string, TopTools_ShapeMapHasher> instance_names;
+  std::string unit, file_unit;          ///< of lengths: as read, and as the file states them
+  std::vector<std::string> complaints;  ///< OpenCASCADE's messages about parts that it cannot read
+  std::string contents;                 ///< for a file without faces: what it holds instead, or empty
 };
 
 // Loads a file. Messages begin with `path`. Changes OpenCASCADE's settings and diverts its messages. Errors:
@@ -35,6 +45,8 @@ void take_messages(std::string& last_failure);
 void set_unit();
 /// The shape, the labels and the complaints of what the reader has transferred.
 CadFile transferred(const XSControl_Reader& reader);
+/// A colour of OpenCASCADE's, which are linear, in sRGB.
+Colour colour_of(const Quantity_Color& colour, double alpha);
 /// The key of a shape in the maps; null for a null shape.
 inline const void* identity(const TopoDS_Shape& shape) { return shape.IsNull() ? nullptr : shape.TShape().get(); }
 

@@ -104,14 +104,18 @@ std::vector<TopoDS_Edge> edges_of(const TopoDS_Wire& wire, const TopoDS_Face& fa
   return edges;
 }
 
-Result<Curve> curve_of(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceBox& box,
-                       const Reparametrization& parameters) {
+Status append_edge(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceBox& box,
+                   const Reparametrization& parameters, const ShapeEdges& edges, TrimLoop& loop) {
   double from = 0, to = 0;
   const handle<Geom2d_Curve> curve = BRep_Tool::CurveOnSurface(edge, face, from, to);
   if (curve.IsNull()) return Status(StatusCode::unsupported, "an edge has no curve in the face's parameters");
   const Domain& d = box.domain;
   const double tolerance = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);
-  return trim_curve(curve, {from, to}, edge.Orientation() == TopAbs_REVERSED, parameters, tolerance);
+  Result<TrimCurve> made = trim_curve(curve, {from, to}, edge.Orientation() == TopAbs_REVERSED, parameters, tolerance);
+  if (!made) return made.status();
+  loop.coedges.push_back(edges.coedge(edge, *made, {from, to}));
+  loop.curves.push_back(std::move(made->curve));
+  return {};
 }
 
 /// Whether all control points of the curve are on one side of the box.
@@ -170,25 +174,24 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
   return FaceBox{{u.from, u.to, v.from, v.to}, u.tolerance(), v.tolerance()};
 }
 
-Result<std::vector<TrimLoop>> face_loops(const TopoDS_Face& given, const FaceBox& box,
-                                         const Reparametrization& parameters) {
+Result<FaceLoops> face_loops(const TopoDS_Face& given, const FaceBox& box, const Reparametrization& parameters,
+                             const ShapeEdges& edges) {
   // Wires of a reversed face run the other way; the region that a loop encloses does not depend on that.
   const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
   const TopoDS_Wire outer = BRepTools::OuterWire(face);
-  std::vector<TrimLoop> loops;
+  FaceLoops out;
   for (TopoDS_Iterator child(face); child.More(); child.Next()) {
     if (child.Value().ShapeType() != TopAbs_WIRE) continue;
     const TopoDS_Wire wire = TopoDS::Wire(child.Value());
     TrimLoop loop{{}, !outer.IsNull() && !wire.IsSame(outer)};
-    for (const TopoDS_Edge& edge : edges_of(wire, face)) {
-      Result<Curve> curve = curve_of(edge, face, box, parameters);
-      if (!curve) return curve.status();
-      loop.curves.push_back(*std::move(curve));
-    }
-    if (!loop.curves.empty()) loops.push_back(std::move(loop));
+    for (const TopoDS_Edge& edge : edges_of(wire, face))
+      if (Status status = append_edge(edge, face, box, parameters, edges, loop); !status.ok()) return status;
+    const auto is_nameless = [](const Coedge& coedge) { return coedge.edge == no_id; };
+    if (std::any_of(loop.coedges.begin(), loop.coedges.end(), is_nameless)) loop.coedges.clear();
+    if (!loop.curves.empty()) out.loops.push_back(std::move(loop));
   }
-  if (is_whole_box(loops, box)) loops.clear();
-  return loops;
+  out.whole = is_whole_box(out.loops, box);
+  return out;
 }
 
 }  // namespace tessera::inline abi_0_1

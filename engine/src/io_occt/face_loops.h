@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io_occt/face_surface.h"
+#include "io_occt/shape_edges.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
@@ -20,9 +21,14 @@ struct FaceBox {
 /// unsupported (unbounded, or no extent). May throw Standard_Failure.
 Result<FaceBox> face_box(const TopoDS_Face& face);
 
-/// The loops of the face in our parameters; none if its edges run along all sides of the box, each once. Errors:
-/// unsupported (an edge without a curve in the parameters), those of trim_curve. May throw Standard_Failure.
-Result<std::vector<TrimLoop>> face_loops(const TopoDS_Face& face, const FaceBox& box,
-                                         const Reparametrization& parameters);
+/// The loops of a face.
+struct FaceLoops {
+  std::vector<TrimLoop> loops;
+  bool whole = false;  ///< one loop runs along all sides of the box, and trims nothing
+};
+/// The loops of the face in our parameters, with coedges of `edges`. Errors: unsupported (an edge without a curve in the
+/// parameters), those of trim_curve. May throw Standard_Failure.
+Result<FaceLoops> face_loops(const TopoDS_Face& face, const FaceBox& box, const Reparametrization& parameters,
+                             const ShapeEdges& edges);
 
 }  // namespace tessera::inline abi_0_1

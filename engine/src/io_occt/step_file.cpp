@@ -1,10 +1,18 @@
 // STEP through OpenCASCADE.
 
+#include <opencascade/Quantity_Color.hxx>
+#include <opencascade/STEPConstruct.hxx>
+#include <opencascade/STEPConstruct_Styles.hxx>
 #include <opencascade/STEPControl_Reader.hxx>
 #include <opencascade/StepBasic_Product.hxx>
 #include <opencascade/StepBasic_ProductDefinition.hxx>
 #include <opencascade/StepBasic_ProductDefinitionFormation.hxx>
+#include <opencascade/StepRepr_NextAssemblyUsageOccurrence.hxx>
+#include <opencascade/StepRepr_RepresentationItem.hxx>
 #include <opencascade/StepShape_ShapeRepresentation.hxx>
+#include <opencascade/StepVisual_Colour.hxx>
+#include <opencascade/StepVisual_StyledItem.hxx>
+#include <opencascade/TColStd_SequenceOfAsciiString.hxx>
 #include <opencascade/TCollection_HAsciiString.hxx>
 #include <opencascade/TransferBRep.hxx>
 #include <opencascade/Transfer_Binder.hxx>
@@ -31,10 +39,43 @@ std::string name_of(const StepBasic_ProductDefinition& definition) {
 void collect_names(const XSControl_Reader& reader, CadFile& file) {
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   for (int k = 1; k <= process->NbMapped(); ++k) {
-    const auto definition = handle<StepBasic_ProductDefinition>::DownCast(process->Mapped(k));
     const TopoDS_Shape shape = TransferBRep::ShapeResult(process->MapItem(k));
-    if (!definition.IsNull() && !shape.IsNull()) file.names[identity(shape)] = name_of(*definition);
+    if (shape.IsNull()) continue;
+    if (const auto product = handle<StepBasic_ProductDefinition>::DownCast(process->Mapped(k))) {
+      file.names[identity(shape)] = name_of(*product);
+      file.products.insert(identity(shape));
+    }
+    const auto use = handle<StepRepr_NextAssemblyUsageOccurrence>::DownCast(process->Mapped(k));
+    if (!use.IsNull() && !use->Name().IsNull() && use->Name()->Length() > 0)
+      file.instance_names.Bind(shape, use->Name()->ToCString());
   }
+}
+
+/// The colours of solids, shells and faces. Colours of single instances, and of edges, are left out.
+void collect_colours(const XSControl_Reader& reader, CadFile& file) {
+  const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
+  STEPConstruct_Styles styles(reader.WS());
+  if (!styles.LoadStyles()) return;
+  for (int k = 1; k <= styles.NbStyles(); ++k) {
+    const handle<StepVisual_StyledItem> style = styles.Style(k);
+    handle<StepVisual_Colour> surface, border, curve, rendered;
+    double transparency = 0;
+    bool is_instance = false;
+    if (style.IsNull() || !styles.GetColors(style, surface, border, curve, rendered, transparency, is_instance) ||
+        is_instance)
+      continue;
+    Quantity_Color colour;
+    const handle<StepVisual_Colour>& shown = rendered.IsNull() ? surface : rendered;
+    if (shown.IsNull() || style->Item().IsNull() || !STEPConstruct_Styles::DecodeColor(shown, colour)) continue;
+    const TopoDS_Shape shape = STEPConstruct::FindShape(process, style->Item());
+    if (!shape.IsNull()) file.colours[identity(shape)] = colour_of(colour, 1 - transparency);
+  }
+}
+
+std::string length_unit(STEPControl_Reader& reader) {
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.FileUnits(lengths, angles, solid_angles);
+  return lengths.IsEmpty() ? std::string() : lengths.First().ToCString();
 }
 
 /// Transfers all representations of shapes, for files without products: a shape that belongs to no product is not a
@@ -60,6 +101,8 @@ Result<CadFile> load_step(const std::string& path) {
   if (reader.NbShapes() == 0) transfer_representations(reader);
   CadFile file = transferred(reader);
   collect_names(reader, file);
+  collect_colours(reader, file);
+  file.file_unit = length_unit(reader);
   return file;
 }
 

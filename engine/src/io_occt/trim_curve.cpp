@@ -2,11 +2,14 @@
 
 #include <opencascade/Geom2dConvert.hxx>
 #include <opencascade/Geom2d_BSplineCurve.hxx>
+#include <opencascade/Geom2d_Circle.hxx>
+#include <opencascade/Geom2d_Ellipse.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -72,16 +75,121 @@ Result<Curve> refitted(const Geom2d_BSplineCurve& spline, const Reparametrizatio
   return std::move(fit).curve();
 }
 
+/// The curve inside wrappers that change neither points nor parameters.
+handle<Geom2d_Curve> bare(handle<Geom2d_Curve> curve) {
+  while (const auto trimmed = handle<Geom2d_TrimmedCurve>::DownCast(curve)) curve = trimmed->BasisCurve();
+  return curve;
+}
+
+handle<Geom2d_BSplineCurve> ellipse_spline(const gp_Ax22d& axes, double major, double minor, const Arcs& arcs) {
+  const gp_XY x = major * axes.XDirection().XY(), y = minor * axes.YDirection().XY();
+  const std::vector<Arcs::Point> points = arcs.points();
+  const int count = static_cast<int>(points.size()), knot_count = count / 2 + 1;
+  TColgp_Array1OfPnt2d poles(1, count);
+  TColStd_Array1OfReal weights(1, count), knots(1, knot_count);
+  TColStd_Array1OfInteger multiplicities(1, knot_count);
+  for (int k = 0; k < count; ++k) {
+    const Arcs::Point& p = points[static_cast<std::size_t>(k)];
+    poles(k + 1) = gp_Pnt2d(axes.Location().XY() + p.cosine * x + p.sine * y);
+    weights(k + 1) = p.weight;
+  }
+  const std::vector<double> all = arcs.knots();
+  for (int k = 0; k < knot_count; ++k) {
+    knots(k + 1) = all[static_cast<std::size_t>(2 * k + 1)];
+    multiplicities(k + 1) = k == 0 || k + 1 == knot_count ? 3 : 2;
+  }
+  return new Geom2d_BSplineCurve(poles, weights, knots, multiplicities, 2);
+}
+
+/// A spline of the curve over a range, and how its parameter follows from the curve's.
+struct PlaneSpline {
+  handle<Geom2d_BSplineCurve> spline;
+  std::optional<Arcs> arcs;  ///< empty: the parameters differ by `shift` at most
+  double shift = 0;
+
+  double parameter(double t) const { return arcs ? arcs->parameter(t) : t + shift; }
+};
+
+PlaneSpline plane_spline(const handle<Geom2d_Curve>& curve, const Interval& range) {
+  const handle<Geom2d_Curve> conic = bare(curve);
+  const auto circle = handle<Geom2d_Circle>::DownCast(conic);
+  const auto ellipse = handle<Geom2d_Ellipse>::DownCast(conic);
+  const double turn = 2 * std::numbers::pi * (1 + 1e-12);
+  if ((!circle.IsNull() || !ellipse.IsNull()) && range.from < range.to && range.to - range.from <= turn) {
+    const Arcs arcs(range.from, range.to);
+    if (!circle.IsNull()) return {ellipse_spline(circle->Position(), circle->Radius(), circle->Radius(), arcs), arcs};
+    return {ellipse_spline(ellipse->Position(), ellipse->MajorRadius(), ellipse->MinorRadius(), arcs), arcs};
+  }
+  const handle<Geom2d_TrimmedCurve> part = new Geom2d_TrimmedCurve(curve, range.from, range.to);
+  PlaneSpline out{Geom2dConvert::CurveToBSplineCurve(part), {}};
+  if (out.spline->IsPeriodic()) out.spline->SetNotPeriodic();
+  out.shift = out.spline->FirstParameter() - range.from;
+  return out;
+}
+
+/// The arcs that a straight line along one parameter runs through, and how far it goes.
+struct ArcsOfLine {
+  const Arcs* arcs = nullptr;  ///< null: none
+  double from = 0, to = 0;     ///< OpenCASCADE's parameters of the surface at its ends
+};
+ArcsOfLine arcs_of_line(const Geom2d_BSplineCurve& line, const Reparametrization& parameters) {
+  const gp_Pnt2d a = line.Pole(1), b = line.Pole(2);
+  const bool along_u = std::abs(b.X() - a.X()) > std::abs(b.Y() - a.Y());
+  const std::optional<Arcs>& arcs = along_u ? parameters.u : parameters.v;
+  return {arcs ? &*arcs : nullptr, along_u ? a.X() : a.Y(), along_u ? b.X() : b.Y()};
+}
+
+/// Where the knots of the arcs, and of those that follow them, lie along the line; from 0 to 1.
+std::vector<double> places_of_knots(const ArcsOfLine& line) {
+  std::vector<double> places;
+  const double first = std::min(line.from, line.to), last = std::max(line.from, line.to);
+  const double step = line.arcs->step();
+  for (double k = std::ceil((first - line.arcs->from()) / step); line.arcs->from() + k * step < last; ++k)
+    places.push_back((line.arcs->from() + k * step - line.from) / (line.to - line.from));
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Describes a spline that is straight along a parameter: at x from 0 to 1 of the line, the mapped line is at the
+/// parameter of its arcs.
+void follow_line(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters, const Interval& range,
+                 TrimCurve& out) {
+  const ArcsOfLine line = arcs_of_line(spline, parameters);
+  if (!line.arcs) return;
+  const Interval d = out.curve.domain();
+  const double start = line.arcs->parameter(line.from), end = line.arcs->parameter(line.to);
+  if (start == end) return;
+  // The spline's own parameter is linear in OpenCASCADE's, and may run the other way.
+  const auto place = [before = out.parameter, d](double t) { return (before(t) - d.from) / (d.to - d.from); };
+  out.parameter = [place, d, start, end, from = line.from, to = line.to, arcs = *line.arcs](double t) {
+    const double there = arcs.parameter(from + place(t) * (to - from));
+    return d.from + (d.to - d.from) * (there - start) / (end - start);
+  };
+  const bool backwards = place(range.from) > place(range.to);
+  for (const double x : places_of_knots(line))
+    out.breaks.push_back(range.from + (backwards ? 1 - x : x) * (range.to - range.from));
+  std::sort(out.breaks.begin(), out.breaks.end());
+}
+
 }  // namespace
 
-Result<Curve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
-                         const Reparametrization& parameters, double tolerance) {
-  const handle<Geom2d_TrimmedCurve> part = new Geom2d_TrimmedCurve(curve, range.from, range.to);
-  const handle<Geom2d_BSplineCurve> spline = Geom2dConvert::CurveToBSplineCurve(part);
-  if (spline->IsPeriodic()) spline->SetNotPeriodic();
+Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
+                             const Reparametrization& parameters, double tolerance) {
+  PlaneSpline plane = plane_spline(curve, range);
+  const handle<Geom2d_BSplineCurve>& spline = plane.spline;
   if (reversed) spline->Reverse();
-  if (parameters.is_identity() || is_straight_along_a_parameter(*spline)) return mapped_poles(*spline, parameters);
-  return refitted(*spline, parameters, tolerance);
+  const bool straight = is_straight_along_a_parameter(*spline);
+  Result<Curve> made = parameters.is_identity() || straight ? mapped_poles(*spline, parameters)
+                                                            : refitted(*spline, parameters, tolerance);
+  if (!made) return made.status();
+  const double ends = spline->FirstParameter() + spline->LastParameter();
+  TrimCurve out{*std::move(made), {}, {}};
+  if (plane.arcs) out.breaks = plane.arcs->knots();
+  out.parameter = [plane, reversed, ends](double t) {
+    return reversed ? ends - plane.parameter(t) : plane.parameter(t);
+  };
+  if (straight) follow_line(*spline, parameters, range, out);
+  return out;
 }
 
 }  // namespace tessera::inline abi_0_1

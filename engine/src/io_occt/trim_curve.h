@@ -1,7 +1,9 @@
 #pragma once
 // The curve of an edge in a face's parameters, as one of our splines.
 
+#include <functional>
 #include <opencascade/Geom2d_Curve.hxx>
+#include <vector>
 
 #include "io_occt/face_surface.h"
 #include "tessera/curve.h"
@@ -9,10 +11,18 @@
 
 namespace tessera::inline abi_0_1 {
 
+/// A curve, and how its parameter follows from OpenCASCADE's.
+struct TrimCurve {
+  Curve curve;
+  std::function<double(double)> parameter;  ///< of OpenCASCADE's parameter; monotone
+  std::vector<double> breaks;               ///< OpenCASCADE's parameters at which `parameter` is not smooth, in order
+};
+
 /// The part of `curve` over `range` in our parameters; reverses its direction if `reversed`. Uses the curve's own
 /// spline if the parameters are equal, or if the curve is straight along one of them; otherwise cubics within
-/// `tolerance`. Errors: those of Curve. May throw Standard_Failure.
-Result<Curve> trim_curve(const opencascade::handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
-                         const Reparametrization& parameters, double tolerance);
+/// `tolerance`. Circles and ellipses become rational arcs over their angles. Errors: those of Curve. May throw
+/// Standard_Failure.
+Result<TrimCurve> trim_curve(const opencascade::handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
+                             const Reparametrization& parameters, double tolerance);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,0 +1,170 @@
+#include "io_occt/part_shape.h"
+
+#include <opencascade/BRep_Tool.hxx>
+#include <opencascade/Standard_Failure.hxx>
+#include <opencascade/Standard_OutOfMemory.hxx>
+#include <opencascade/TopoDS.hxx>
+#include <opencascade/TopoDS_Face.hxx>
+#include <opencascade/TopoDS_Iterator.hxx>
+#include <opencascade/gp_Trsf.hxx>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.h"
+#include "io_occt/face_loops.h"
+#include "io_occt/face_surface.h"
+#include "io_occt/shape_edges.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+using opencascade::handle;
+
+/// Swaps u and v, which turns the normal around.
+Result<BSplineSurface> transposed(const BSplineSurface& s) {
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (std::size_t j = 0; j < s.count_v(); ++j)
+    for (std::size_t i = 0; i < s.count_u(); ++i) {
+      points.push_back(s.point(i, j));
+      weights.push_back(s.weight(i, j));
+    }
+  const Domain& d = s.domain();
+  return BSplineSurface::rational(s.degree_v(), s.knots_v(), s.degree_u(), s.knots_u(), points, weights,
+                                  Domain{d.v0, d.v1, d.u0, d.u1});
+}
+
+Result<Curve> transposed(const Curve& curve) {
+  std::vector<Vec3> points(curve.points().begin(), curve.points().end());
+  for (Vec3& p : points) std::swap(p.x, p.y);
+  return curve.is_rational() ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots(), curve.domain())
+                             : Curve::b_spline(curve.degree(), points, curve.knots(), curve.domain());
+}
+
+Status transpose(BSplineSurface& surface, std::vector<TrimLoop>& loops) {
+  Result<BSplineSurface> swapped = transposed(surface);
+  if (!swapped) return swapped.status();
+  surface = *std::move(swapped);
+  for (TrimLoop& loop : loops)
+    for (Curve& curve : loop.curves) {
+      Result<Curve> turned = transposed(curve);
+      if (!turned) return turned.status();
+      curve = *std::move(turned);
+    }
+  return {};
+}
+
+/// Name, colour, shell and solid of the wholes that hold a face.
+struct Wholes {
+  const std::string* name = nullptr;
+  std::optional<Colour> colour;
+  std::uint32_t shell = no_id, solid = no_id;
+};
+
+/// Gathers the faces of one part.
+class PartShape {
+ public:
+  PartShape(const CadFile& file, const TopoDS_Shape& part, Shortcomings& shortcomings)
+      : file_(file), edges_(part), shortcomings_(shortcomings) {}
+
+  void add_all(const TopoDS_Shape& shape, Wholes wholes) {
+    const auto name = file_.names.find(identity(shape));
+    if (name != file_.names.end() && !name->second.empty()) wholes.name = &name->second;
+    const auto colour = file_.colours.find(identity(shape));
+    if (colour != file_.colours.end()) wholes.colour = colour->second;
+    switch (shape.ShapeType()) {
+      case TopAbs_FACE:
+        return add_face(TopoDS::Face(shape), wholes);
+      case TopAbs_SOLID:
+        wholes.solid = shape_.solid_count++;
+        break;
+      case TopAbs_SHELL:
+        wholes.shell = static_cast<std::uint32_t>(shape_.shells.size());
+        shape_.shells.push_back({{}, wholes.solid});
+        break;
+      default:
+        break;
+    }
+    for (TopoDS_Iterator child(shape); child.More(); child.Next()) add_all(child.Value(), wholes);
+  }
+
+  Shape finish(const std::string* above) && {
+    std::move(edges_).give_to(shape_);
+    if (above) shape_.name = *above;
+    return std::move(shape_);
+  }
+
+ private:
+  void add_face(const TopoDS_Face& face, const Wholes& wholes) {
+    ++shortcomings_.faces;
+    const std::string name = wholes.name ? *wholes.name : std::string();
+    Status status;
+    try {
+      status = try_face(face, name, wholes);
+    } catch (const Standard_OutOfMemory&) {
+      throw std::bad_alloc();
+    } catch (const Standard_Failure& failure) {
+      status = Status(StatusCode::internal, std::string("OpenCASCADE: ") + failure.GetMessageString());
+    }
+    if (status.ok()) return;
+    if (shortcomings_.left_out.empty()) shortcomings_.first_code = status.code();
+    shortcomings_.left_out.push_back(words(face, name) + " is left out: " + status.message());
+  }
+
+  /// "face #51 (nut)".
+  std::string words(const TopoDS_Face& face, const std::string& name) const {
+    const auto label = file_.labels.find(identity(face));
+    const bool labelled = label != file_.labels.end() && !label->second.empty();
+    return "face " + (labelled ? label->second : std::to_string(shortcomings_.faces - 1)) +
+           (name.empty() ? "" : " (" + name + ")");
+  }
+
+  Status try_face(const TopoDS_Face& face, const std::string& name, const Wholes& wholes) {
+    TopLoc_Location place;
+    const handle<Geom_Surface> surface = BRep_Tool::Surface(face, place);
+    if (surface.IsNull()) return Status(StatusCode::unsupported, "it has no surface");
+    const Result<FaceBox> box = face_box(face);
+    if (!box) return box.status();
+    Result<FaceSurface> made = face_surface(surface, box->domain);
+    if (!made) return made.status();
+    Result<FaceLoops> loops = face_loops(face, *box, made->parameters, edges_);
+    if (!loops) {
+      shortcomings_.whole.push_back(words(face, name) +
+                                    " is taken as untrimmed, its loops cannot be read: " + loops.status().message());
+      loops = FaceLoops{};
+    }
+    if (face.Orientation() == TopAbs_REVERSED)
+      if (Status status = transpose(made->surface, loops->loops); !status.ok()) return status;
+    shortcomings_.fitted += made->fit_error > 0;
+    shortcomings_.worst_fit = std::max(shortcomings_.worst_fit, made->fit_error);
+    if (wholes.shell != no_id)
+      shape_.shells[wholes.shell].faces.push_back(static_cast<std::uint32_t>(shape_.faces.size()));
+    ModelSurface& out =
+        shape_.faces.emplace_back(ModelSurface{name, std::move(made->surface), affine(place.Transformation())});
+    (loops->whole ? out.outline : out.trims) = std::move(loops->loops);
+    out.colour = wholes.colour;
+    return {};
+  }
+
+  const CadFile& file_;
+  ShapeEdges edges_;
+  Shortcomings& shortcomings_;
+  Shape shape_;
+};
+
+}  // namespace
+
+Affine affine(const gp_Trsf& map) {
+  const auto column = [&](int k) { return Vec3{map.Value(1, k), map.Value(2, k), map.Value(3, k)}; };
+  return {.columns = {column(1), column(2), column(3)}, .translation = column(4)};
+}
+
+Shape part_shape(const CadFile& file, const TopoDS_Shape& part, const std::string* above, Shortcomings& shortcomings) {
+  PartShape faces(file, part, shortcomings);
+  faces.add_all(part, {above, {}});
+  const auto own = file.names.find(identity(part));
+  return std::move(faces).finish(own != file.names.end() && !own->second.empty() ? &own->second : above);
+}
+
+}  // namespace tessera::inline abi_0_1

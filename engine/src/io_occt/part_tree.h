@@ -1,0 +1,41 @@
+#pragma once
+// Which shapes of a file are parts, and where they stand.
+
+#include <opencascade/TopTools_MapOfShape.hxx>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "io_occt/cad_file.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A part at its place.
+struct PlacedPart {
+  TopoDS_Shape shape;                  ///< with location and orientation in the file
+  const std::string* above = nullptr;  ///< name of the nearest whole that has one and holds the part; null: none
+  std::optional<Colour> colour;        ///< of the nearest whole that has one and holds the part
+  std::string name;                    ///< of this instance; may be empty
+};
+
+/// Lists the parts of a file in their order. A part is as much of the file as stands together at each of its places:
+/// whatever is no compound, and a compound without products and without shapes that stand at more places than itself.
+/// So no two parts share edges, except solids that a compound of products holds directly.
+class PartTree {
+ public:
+  explicit PartTree(const CadFile& file) : file_(file) {}
+  std::vector<PlacedPart> parts();
+
+ private:
+  void count_places(const TopoDS_Shape& shape);
+  bool is_whole(const TopoDS_Shape& shape);
+  void add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_parent, PlacedPart above);
+
+  const CadFile& file_;
+  TopTools_MapOfShape seen_;
+  std::unordered_map<const void*, int> places_;  ///< of each shape, the number of its locations in the file
+  std::unordered_map<const void*, bool> whole_;  ///< answers of is_whole()
+  std::vector<PlacedPart> parts_;
+};
+
+}  // namespace tessera::inline abi_0_1

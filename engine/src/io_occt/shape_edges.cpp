@@ -1,0 +1,191 @@
+#include "io_occt/shape_edges.h"
+
+#include <opencascade/BRep_Tool.hxx>
+#include <opencascade/Geom_Curve.hxx>
+#include <opencascade/TopExp.hxx>
+#include <opencascade/TopExp_Explorer.hxx>
+#include <opencascade/TopoDS.hxx>
+#include <opencascade/TopoDS_Vertex.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "io_occt/spline_line.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+using opencascade::handle;
+
+double length_or_zero(double value) { return std::isfinite(value) && value > 0 ? value : 0; }
+
+bool is_range(const Interval& range) { return range.from < range.to && std::isfinite(range.to - range.from); }
+
+Result<Curve> curve_of(const SplineLine& line) {
+  return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, line.range)
+                              : Curve::nurbs(line.degree, line.points, line.weights, line.knots, line.range);
+}
+
+/// A monotone function on an interval.
+struct Function {
+  Interval range;
+  std::function<double(double)> at;
+  std::vector<double> breaks;  ///< where it is not smooth, within the range and in order
+};
+
+/// Fractions of linear functions, as a rational spline of degree 1.
+class Fractions {
+ public:
+  explicit Fractions(const Function& f) : f_(f) {}
+
+  /// Empty if the function is not monotone.
+  std::optional<Curve> curve() {
+    add_point(f_.range.from);
+    for (const double end : f_.breaks) append(knots_.back(), end, 0);
+    append(knots_.back(), f_.range.to, 0);
+    if (!monotone_) return {};
+    std::vector<double> knots{knots_.front()};
+    knots.insert(knots.end(), knots_.begin(), knots_.end());
+    knots.push_back(knots_.back());
+    const Result<Curve> made = Curve::nurbs(1, points_, weights_, knots);
+    return made ? std::optional<Curve>(*made) : std::nullopt;
+  }
+
+ private:
+  void add_point(double s, double ratio = 1) {
+    points_.push_back({f_.at(s), 0, 0});
+    weights_.push_back(weights_.empty() ? 1 : ratio * weights_.back());
+    knots_.push_back(s);
+  }
+
+  /// Appends one fraction, which interpolates both ends and the middle; halves the interval until points between fit.
+  void append(double from, double to, int depth) {
+    if (!(from < to)) return;
+    const double a = f_.at(from), b = f_.at(to), middle = f_.at(0.5 * (from + to));
+    const double ratio = (middle - a) / (b - middle);
+    if (!(ratio > 1e-6 && ratio < 1e6)) {
+      monotone_ = false;
+      return;
+    }
+    bool fits = true;
+    for (const double x : {0.25, 0.75}) {
+      const double fraction = ((1 - x) * a + x * ratio * b) / (1 - x + x * ratio);
+      fits = fits && std::abs(fraction - f_.at((1 - x) * from + x * to)) <= 1e-10 * std::abs(b - a);
+    }
+    constexpr int deepest = 6;
+    if (fits || depth == deepest) return add_point(to, ratio);
+    append(from, 0.5 * (from + to), depth + 1);
+    append(0.5 * (from + to), to, depth + 1);
+  }
+
+  const Function& f_;
+  std::vector<Vec3> points_;
+  std::vector<double> weights_, knots_;
+  bool monotone_ = true;
+};
+
+/// Whether f runs evenly from one end of `domain` to the other, up to rounding.
+bool is_even(const Function& f, const Interval& domain, bool reversed) {
+  const double width = f.range.to - f.range.from;
+  if (std::abs(domain.from - f.range.from) + std::abs(domain.to - f.range.to) > 1e-12 * width) return false;
+  const auto fits = [&](double s) {
+    const double even = reversed ? domain.from + domain.to - s : s;
+    return std::abs(f.at(s) - even) <= 1e-12 * (width + std::abs(s));
+  };
+  double before = f.range.from;
+  for (std::size_t k = 0; k <= f.breaks.size(); ++k) {
+    const double end = k < f.breaks.size() ? f.breaks[k] : f.range.to;
+    for (const double x : {0.0, 0.25, 0.5, 1.0})
+      if (!fits((1 - x) * before + x * end)) return false;
+    before = end;
+  }
+  return true;
+}
+
+}  // namespace
+
+ShapeEdges::ShapeEdges(const TopoDS_Shape& shape) {
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+    TopExp::MapShapes(face.Current(), TopAbs_EDGE, edge_map_);
+  for (int k = 1; k <= edge_map_.Extent(); ++k) TopExp::MapShapes(edge_map_(k), TopAbs_VERTEX, vertex_map_);
+  for (int k = 1; k <= vertex_map_.Extent(); ++k) {
+    const TopoDS_Vertex vertex = TopoDS::Vertex(vertex_map_(k));
+    vertices_.push_back({vec3(BRep_Tool::Pnt(vertex).XYZ()), length_or_zero(BRep_Tool::Tolerance(vertex))});
+  }
+  for (int k = 1; k <= edge_map_.Extent(); ++k) add_edge(TopoDS::Edge(edge_map_(k)));
+}
+
+std::uint32_t ShapeEdges::vertex_id(const TopoDS_Shape& vertex) const {
+  const int index = vertex.IsNull() ? 0 : vertex_map_.FindIndex(vertex);
+  if (index == 0 || !is_finite(vertices_[static_cast<std::size_t>(index - 1)].position)) return no_id;
+  return static_cast<std::uint32_t>(index - 1);
+}
+
+void ShapeEdges::add_edge(const TopoDS_Edge& given) {
+  const TopoDS_Edge edge = TopoDS::Edge(given.Oriented(TopAbs_FORWARD));
+  BrepEdge& out = edges_.emplace_back();
+  Parameter& parameter = parameters_.emplace_back();
+  TopoDS_Vertex start, end;
+  TopExp::Vertices(edge, start, end);
+  out.start = vertex_id(start);
+  out.end = vertex_id(end);
+  out.tolerance = length_or_zero(BRep_Tool::Tolerance(edge));
+  out.degenerate = BRep_Tool::Degenerated(edge);
+  out.same_parameter = BRep_Tool::SameParameter(edge);
+  double from = 0, to = 0;
+  const handle<Geom_Curve> curve = BRep_Tool::Curve(edge, from, to);
+  if (curve.IsNull()) BRep_Tool::Range(edge, from, to);
+  if (!is_range({from, to})) return;
+  out.range = parameter.theirs = {from, to};
+  if (curve.IsNull() || out.degenerate) return;
+  const Result<SplineLine> line = spline_line(curve, out.range);
+  if (!line) return;
+  const Result<Curve> made = curve_of(*line);
+  if (!made) return;
+  out.curve = *made;
+  out.range = made->domain();
+  parameter.arcs = line->arcs;
+}
+
+Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs) const {
+  Coedge out{no_id, edge.Orientation() == TopAbs_REVERSED, {}};
+  const int index = edge_map_.FindIndex(edge);
+  if (index == 0) return out;
+  out.edge = static_cast<std::uint32_t>(index - 1);
+  const Parameter& parameter = parameters_[out.edge];
+  const Interval range = edges_[out.edge].range, whole = parameter.theirs;  // whole: ours if there is no range
+  if (edges_[out.edge].degenerate || !is_range(theirs) || !is_range(whole)) return out;
+  // From the edge's parameter to OpenCASCADE's, to that of the face's curve, to ours.
+  const double stretch = (theirs.to - theirs.from) / (whole.to - whole.from);
+  const auto their = [&](double s) {
+    const double t = parameter.arcs ? parameter.arcs->angle(s) : s;
+    return whole == theirs ? t : theirs.from + stretch * (t - whole.from);
+  };
+  Function f{range, [&](double s) { return trim.parameter(their(s)); }, {}};
+  if (parameter.arcs) f.breaks = parameter.arcs->knots();
+  for (const double b : trim.breaks) {
+    const double t = whole == theirs ? b : whole.from + (b - theirs.from) / stretch;
+    f.breaks.push_back(parameter.arcs ? parameter.arcs->parameter(t) : t);
+  }
+  const double tiny = 1e-9 * (range.to - range.from);
+  std::sort(f.breaks.begin(), f.breaks.end());
+  double before = range.from;
+  std::erase_if(f.breaks, [&](double s) {
+    const bool near = s - before < tiny || range.to - s < tiny;
+    if (!near) before = s;
+    return near;
+  });
+  if (!is_even(f, trim.curve.domain(), out.reversed)) out.parameter = Fractions(f).curve();
+  return out;
+}
+
+void ShapeEdges::give_to(Shape& shape) && {
+  // An unusable vertex has no edges, see vertex_id().
+  for (BrepVertex& vertex : vertices_)
+    if (!is_finite(vertex.position)) vertex.position = {};
+  shape.vertices = std::move(vertices_);
+  shape.edges = std::move(edges_);
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,43 @@
+#pragma once
+// The vertices and edges of a shape, with ids.
+
+#include <opencascade/TopTools_IndexedMapOfShape.hxx>
+#include <opencascade/TopoDS_Edge.hxx>
+#include <optional>
+#include <vector>
+
+#include "io_occt/arcs.h"
+#include "io_occt/trim_curve.h"
+#include "tessera/model.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// The edges of a shape's faces in the order of TopExp::MapShapes, and their vertices. An edge is the same where shape
+/// and location are.
+class ShapeEdges {
+ public:
+  /// May throw Standard_Failure.
+  explicit ShapeEdges(const TopoDS_Shape& shape);
+
+  /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`.
+  Coedge coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs) const;
+
+  /// Moves vertices and edges into a shape of ours.
+  void give_to(Shape& shape) &&;
+
+ private:
+  /// How the parameter of an edge follows from OpenCASCADE's.
+  struct Parameter {
+    Interval theirs;
+    std::optional<Arcs> arcs;  ///< empty: they are equal
+  };
+  void add_edge(const TopoDS_Edge& edge);
+  std::uint32_t vertex_id(const TopoDS_Shape& vertex) const;
+
+  TopTools_IndexedMapOfShape edge_map_, vertex_map_;
+  std::vector<BrepVertex> vertices_;
+  std::vector<BrepEdge> edges_;
+  std::vector<Parameter> parameters_;
+};
+
+}  // namespace tessera::inline abi_0_1
