@@ -43,6 +43,39 @@ TEST_F(CadTool, RealPartsAreMeshedAndDrawn) {
   }
 }
 
+TEST_F(CadTool, EdgesSolidsAndUnitsOfRealPartsAreTold) {
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  const auto facts_of = [&](const char* part) {
+    return json::parse(run({"info", (std::filesystem::path(data) / part).string(), "--joins", "0", "--json"}).output);
+  };
+  const json assembly = facts_of("step_cad/as1-oc-214.stp"), topology = assembly["topology"];
+  EXPECT_EQ(topology["shapes"], 5);
+  EXPECT_EQ(topology["instances"], 18);
+  EXPECT_EQ(topology["solids"], 18);
+  EXPECT_EQ(topology["closed_shells"], 18);
+  EXPECT_EQ(topology["open_shells"], 0);
+  EXPECT_EQ(topology["edges"], 354);
+  EXPECT_EQ(topology["edges_of_two_faces"], 354);
+  EXPECT_EQ(topology["edges_of_one_face"], 0);
+  EXPECT_EQ(topology["edges_of_more_faces"], 0);
+  EXPECT_NEAR(topology["largest_gap"], 2.8e-5, 1e-6);
+  EXPECT_EQ(assembly["unit"], "mm");
+  EXPECT_EQ(assembly["file_unit"], "millimetre");
+  const json hammer = facts_of("iges_cad/occt_hammer.iges")["topology"];
+  EXPECT_EQ(hammer["edges_of_one_face"], 208);
+  EXPECT_EQ(hammer["largest_gap"], 0);
+  const json bottle = facts_of("brep_occt/bottle.brep");
+  EXPECT_EQ(bottle["topology"]["degenerate_edges"], 16);
+  EXPECT_TRUE(bottle["unit"].is_null());
+  const std::string text =
+      run({"info", (std::filesystem::path(data) / "step_cad/screw.step").string(), "--joins", "0"}).output;
+  EXPECT_NE(text.find("  edges            22 edges: 22 of two faces, 0 of one, 0 of more\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("  solids           1 solid; shells: 1 closed, 0 open\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("; sampled, 65 points of each edge\n"), std::string::npos) << text;
+}
+
 TEST_F(CadTool, BrokenPartsAreRefused) {
   folder_.file("part.step", "ISO-10303-21;\nnonsense");
   expect_failure({"info", "part.step"}, 1, "tessera: part.step: OpenCASCADE cannot read it as STEP: Line ");

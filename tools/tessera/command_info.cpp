@@ -10,6 +10,7 @@
 #include "loading.h"
 #include "memory.h"
 #include "tessera/execution.h"
+#include "topology_facts.h"
 #include "trim_facts.h"
 
 namespace tessera::cli {
@@ -27,11 +28,15 @@ struct Findings {
   const PatchSet& set;
   Facts facts;
   TrimFacts trims;
+  TopologyFacts topology;
   std::optional<Joins> joins;  ///< empty if they are left out
   Isa isa;
 };
 
 Json range_json(const Range& range) { return Json::array({range.least, range.largest}); }
+
+/// Null if none is stated.
+Json unit_json(const std::string& unit) { return unit.empty() ? Json() : Json(unit); }
 
 Json memory_json(const Facts& facts) {
   return {{"model", facts.model_bytes}, {"patches", facts.patch_bytes}, {"blocks", facts.block_bytes}};
@@ -54,6 +59,9 @@ Json as_json(const Findings& found) {
           {"trimmed_surfaces", found.trims.trimmed},
           {"loops", found.trims.loops},
           {"loop_remarks", remarks_json(found.trims)},
+          {"topology", topology_json(found.loaded.model, found.topology)},
+          {"unit", unit_json(found.loaded.model.unit)},
+          {"file_unit", unit_json(found.loaded.model.file_unit)},
           {"parameters",
            {{"u", range_json(facts.u)}, {"v", range_json(facts.v)}, {"surfaces_on_unit_square", facts.on_unit_square}}},
           {"patches", found.set.patch_count()},
@@ -108,8 +116,8 @@ std::string as_text(const Findings& found) {
        << "\n  degrees          " << list_of_degrees(facts) << "\n  rational         " << facts.rational
        << " of the patches"
        << "\n  parameters       " << parameters_text(facts, surfaces) << trims_lines(found.trims, found.loaded)
-       << "\n  collapsed edges  " << facts.collapsed_edges << " on " << facts.patches_with_collapsed_edges
-       << " patches\n"
+       << topology_lines(found.loaded.model, found.topology) << unit_line(found.loaded.model) << "\n  collapsed edges  "
+       << facts.collapsed_edges << " on " << facts.patches_with_collapsed_edges << " patches\n"
        << (found.joins ? joins_text(*found.joins) : "  joins            left out, as --joins 0 says\n")
        << "  control points   " << facts.control_points << ", of the patches"
        << "\n  bounding box     " << point(found.set.box().lower) << " to " << point(found.set.box().upper)
@@ -131,10 +139,16 @@ Status run_info(const Job& job, const Options& options, const CommonOptions& com
   if (!set) return set.status();
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();
-  Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, {}, *isa};
+  Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, {}, {}, *isa};
   if (loaded->trimmed() > 0) {
     const auto phase = timings.phase("trims");
     found.trims = find_trims(*loaded);
+  }
+  if (!loaded->model.shapes.empty()) {
+    const auto phase = timings.phase("edges");
+    const Result<TopologyFacts> topology = count_topology(loaded->model);
+    if (!topology) return in_file(job.inputs[0], topology.status());
+    found.topology = *topology;
   }
   if (options.max_joins > 0) {
     const auto phase = timings.phase("joins");
@@ -157,6 +171,10 @@ constexpr const char* footer =
     "Trims: faces with loops, and a remark on each loop that had to be repaired: gaps that a line closes, parts "
     "beyond\n"
     "the domain or over each other, loops that enclose nothing.\n"
+    "Edges, of models from CAD files: counts are those of all instances. An edge of two faces may be the seam of one.\n"
+    "The largest gap is the distance of two faces' points at equal parameters of their edge; the file's own "
+    "tolerance is\n"
+    "no bound of it.\n"
     "Memory: surfaces with their points, weights, knots and trims; patches; blocks packed for evaluation.\n"
     "\nExamples:\n"
     "  tessera info teapot.bpt\n"
