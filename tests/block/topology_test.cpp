@@ -45,7 +45,7 @@ Shape cube() {
       loop.curves.push_back(line(uv[k], uv[(k + 1) % 4]));
       loop.coedges.push_back(edge(at[k], at[(k + 1) % 4]));
     }
-    ModelSurface face{"side", value_of(BezierPatch::polynomial(1, 1, points))};
+    ShapeFace face{{"side", value_of(BezierPatch::polynomial(1, 1, points))}};
     (shape.faces.size() < 3 ? face.trims : face.outline) = std::vector<TrimLoop>{loop};
     shape.faces.push_back(face);
   }
@@ -65,17 +65,12 @@ Model two_cubes() {
 TEST(Topology, FacesOfInstancesArePlacedAndShareTheirGeometry) {
   Model model = two_cubes();
   model.shapes[0].faces[1].placement = Affine::translated({0, 1, 0});
-  model.shapes[0].faces[1].colour = Colour{0, 0, 1};
   model.surfaces = value_of(placed_faces(model.shapes, model.instances));
   ASSERT_EQ(model.surfaces.size(), 12u);
   EXPECT_TRUE(check_topology(model).ok());
   EXPECT_EQ(model.surfaces[6].placement, Affine::translated({3, 0, 0}));
   EXPECT_EQ(model.surfaces[7].placement, Affine::translated({3, 1, 0}));
-  EXPECT_EQ(model.surfaces[0].colour, (Colour{1, 0, 0}));
-  EXPECT_EQ(model.surfaces[1].colour, (Colour{0, 0, 1}));
-  EXPECT_FALSE(model.surfaces[6].colour);
   EXPECT_EQ(&*model.surfaces[6].trims, &*model.shapes[0].faces[0].trims);
-  EXPECT_EQ(&*model.surfaces[11].outline, &*model.shapes[0].faces[5].outline);
 }
 
 TEST(Topology, EveryEdgeOfACubeIsUsedByTwoFacesInOppositeDirections) {
@@ -170,12 +165,12 @@ TEST(Topology, AParameterCurvePairsArcsThatAreDividedDifferently) {
   const Curve side =
       value_of(Curve::b_spline(1, std::vector<Vec3>{{0, 0, 0}, {turn, 0, 0}}, std::vector<double>{0, 0, turn, turn}));
   TrimLoop in_plane{{arc}, false, {{0, false}}}, on_wall{{side}, false, {{0, false, {}}}};
-  shape.faces.push_back({"plane",
-                         value_of(BSplineSurface::polynomial(1, plane_knots, 1, plane_knots, square)),
-                         {},
-                         std::vector{in_plane}});
+  shape.faces.push_back({{"plane",
+                          value_of(BSplineSurface::polynomial(1, plane_knots, 1, plane_knots, square)),
+                          {},
+                          std::vector{in_plane}}});
   shape.faces.push_back(
-      {"wall", value_of(BSplineSurface::rational(2, knots, 1, across, points, weights)), {}, {}, std::vector{on_wall}});
+      {{"wall", value_of(BSplineSurface::rational(2, knots, 1, across, points, weights))}, std::vector{on_wall}});
   EXPECT_GT(value_of(edge_gaps(shape, 33))[0], 1e-3);
   on_wall.coedges[0].parameter = value_of(Curve::nurbs(1, t_points, t_weights, t_knots));
   shape.faces[1].outline = std::vector{on_wall};
@@ -194,7 +189,7 @@ TEST(Topology, LoopsBeyondTheDomainOfAClosedSurfaceAreMeasuredWithinIt) {
   Shape shape;
   shape.edges.resize(1);
   for (const double turns : {0.0, -1.0, 2.0})
-    shape.faces.push_back({"ball", ball, {}, std::vector<TrimLoop>{across(turns * width)}});
+    shape.faces.push_back({{"ball", ball, {}, std::vector<TrimLoop>{across(turns * width)}}});
   EXPECT_LT(value_of(edge_gaps(shape, 9))[0], 1e-14);
   shape.faces[1].trims = std::vector<TrimLoop>{across(0.25 * width)};
   EXPECT_GT(value_of(edge_gaps(shape, 9))[0], 1);

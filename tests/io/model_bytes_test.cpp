@@ -33,7 +33,7 @@ Model sample_of_shapes() {
   const Model surfaces = sample();
   const std::vector<Vec3> ends{{0, 0, 0}, {1, 0, 0}};
   const Result<Curve> line = Curve::bezier(ends);
-  shape.faces = {surfaces.surfaces[0], surfaces.surfaces[1]};
+  shape.faces = {{surfaces.surfaces[0]}, {surfaces.surfaces[1]}};
   shape.faces[0].trims = std::vector<TrimLoop>{{{*line, *line}, true, {{0, true, *line}, {1, false}}}};
   shape.faces[1].outline = std::vector<TrimLoop>{{{*line}, false, {{0, false}}}};
   shape.faces[1].colour = Colour{0.25, 0.5, 1, 0.75};
@@ -73,7 +73,7 @@ TEST(ModelBytes, HoldShapesAndInstances) {
   EXPECT_EQ(shape.shells[1].solid, no_id);
   EXPECT_EQ(shape.solid_count, 1u);
   ASSERT_EQ(read->surfaces.size(), 4u);
-  EXPECT_EQ(read->surfaces[0].colour, (Colour{1, 0, 0}));
+  EXPECT_EQ(read->instances[0].colour, (Colour{1, 0, 0}));
   EXPECT_EQ(read->surfaces[1].placement, Affine::translated({1, 0, 0}));
   EXPECT_EQ(read->instances[1].first_surface, 2u);
   EXPECT_EQ(read->instances[1].name, "two");
@@ -100,7 +100,7 @@ TEST(ModelBytes, WrongIdsAreNamed) {
 TEST(ModelBytes, FewBytesDoNotBecomeEndlessSurfaces) {
   Model model = sample_of_shapes();
   model.shapes[0].faces.resize(1, model.shapes[0].faces[0]);
-  model.shapes[0].faces.resize(2100, {"", model.shapes[0].faces[0].surface});
+  model.shapes[0].faces.resize(2100, {{"", model.shapes[0].faces[0].surface}});
   model.shapes[0].shells = {};
   model.instances.assign(2000, {0});
   model.surfaces = {};

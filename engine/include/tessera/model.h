@@ -26,10 +26,14 @@ namespace tessera::inline abi_0_1 {
 /// A named surface, its placement in the model, and the loops that trim it. Grids and rays ignore the loops so far:
 /// they see each patch of a set as a whole. Copies share everything.
 struct ModelSurface {
-  Shared<std::string> name;                    ///< may be empty
-  Surface surface;                             ///< in its own space
-  Shared<Affine> placement = {};               ///< from its own space to the model's, or its shape's
-  Shared<std::vector<TrimLoop>> trims = {};    ///< what is kept of it, in its own parameters; none: all
+  Shared<std::string> name;                  ///< may be empty
+  Surface surface;                           ///< in its own space
+  Shared<Affine> placement = {};             ///< from its own space to the model's
+  Shared<std::vector<TrimLoop>> trims = {};  ///< what is kept of it, in its own parameters; none: all
+};
+
+/// A face of a shape: its placement leads to the shape's space.
+struct ShapeFace : ModelSurface {
   Shared<std::vector<TrimLoop>> outline = {};  ///< without trims: loops along the domain's sides, for their coedges
   std::optional<Colour> colour = {};           ///< as the file states it
 };
@@ -38,7 +42,7 @@ struct ModelSurface {
 /// part's own space. Memory: about 300 bytes per edge beside its faces.
 struct Shape {
   Shared<std::string> name;          ///< may be empty
-  std::vector<ModelSurface> faces;   ///< in the order of the file; coedges of their loops are indices into `edges`
+  std::vector<ShapeFace> faces;      ///< in the order of the file; coedges of their loops are indices into `edges`
   std::vector<BrepVertex> vertices;  ///< may be none
   std::vector<BrepEdge> edges;       ///< may be none
   std::vector<Shell> shells = {};    ///< a face may be in none
@@ -97,6 +101,10 @@ Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& optio
 /// count_mismatch.
 Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> grids,
                                 const PatchSetOptions& options = {});
+
+/// Makes the set of a shape's faces, in the shape's space, so that a shape is meshed once for all its instances.
+/// source(k).surface is the index into shape.faces. Errors: as above.
+Result<PatchSet> make_patch_set(const Shape& shape, const PatchSetOptions& options = {}, const FitOptions& fit = {});
 
 /// Makes one set of the patches of several surfaces. source(k).surface is the index into `grids`, and source(k).domain
 /// the patch's rectangle. Errors: those of PatchSet::make().

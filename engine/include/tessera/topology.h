@@ -24,14 +24,14 @@ namespace tessera::inline abi_0_1 {
 Status check_topology(const Model& model);
 
 /// Returns the faces of all instances in the model's space, one instance after the other: what Model::surfaces holds if
-/// there are instances. A face without a colour gets its instance's.
+/// there are instances.
 ///
 /// Errors: invalid_argument (an instance of no shape; index = the instance). Memory: each face shares geometry, loops and
 /// name with its shape.
 Result<std::vector<ModelSurface>> placed_faces(std::span<const Shape> shapes, std::span<const Instance> instances);
 
 /// Returns the loops that name the edges of a face: its trims, or its outline if it has no trims.
-inline const std::vector<TrimLoop>& edge_loops(const ModelSurface& face) {
+inline const std::vector<TrimLoop>& edge_loops(const ShapeFace& face) {
   return face.trims->empty() ? *face.outline : *face.trims;
 }
 

@@ -51,7 +51,7 @@ Result<Vec3> in_domain(const ModelSurface& face, Vec3 uv) {
 
 /// The face's point at the edge's parameter s.
 Result<Vec3> point_at(const Shape& shape, const EdgeUse& use, double s) {
-  const ModelSurface& face = shape.faces[use.face];
+  const ShapeFace& face = shape.faces[use.face];
   const TrimLoop& loop = edge_loops(face)[use.loop];
   const Curve& curve = loop.curves[use.curve];
   const Result<Vec3> uv = in_domain(face, position(curve, curve_parameter(loop.coedges[use.curve], curve, s)));

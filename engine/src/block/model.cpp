@@ -280,6 +280,14 @@ Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> g
   });
 }
 
+Result<PatchSet> make_patch_set(const Shape& shape, const PatchSetOptions& options, const FitOptions& fit) {
+  return guarded([&] {
+    Model faces;
+    faces.surfaces.assign(shape.faces.begin(), shape.faces.end());
+    return make_patch_set(faces, options, fit);
+  });
+}
+
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
     Gathered all;

@@ -134,11 +134,10 @@ Result<std::vector<ModelSurface>> placed_faces(std::span<const Shape> shapes, st
     for (std::size_t k = 0; k < instances.size(); ++k) {
       if (Status status = check_shape_id(shapes, instances, k); !status.ok()) return status;
       const Instance& instance = instances[k];
-      for (const ModelSurface& face : shapes[instance.shape].faces) {
+      for (const ShapeFace& face : shapes[instance.shape].faces) {
         ModelSurface& placed = surfaces.emplace_back(face);
         placed.placement = instance.placement;
         if (face.placement != Affine{}) placed.placement = *instance.placement * *face.placement;
-        if (!placed.colour) placed.colour = instance.colour;
       }
     }
     return surfaces;

@@ -140,8 +140,8 @@ class PartShape {
     shortcomings_.worst_fit = std::max(shortcomings_.worst_fit, made->fit_error);
     if (wholes.shell != no_id)
       shape_.shells[wholes.shell].faces.push_back(static_cast<std::uint32_t>(shape_.faces.size()));
-    ModelSurface& out =
-        shape_.faces.emplace_back(ModelSurface{name, std::move(made->surface), affine(place.Transformation())});
+    ShapeFace& out =
+        shape_.faces.emplace_back(ShapeFace{{name, std::move(made->surface), affine(place.Transformation())}});
     (loops->whole ? out.outline : out.trims) = std::move(loops->loops);
     out.colour = wholes.colour;
     return {};

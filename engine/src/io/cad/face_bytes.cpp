@@ -69,15 +69,24 @@ bool take_loops(ByteReader& in, Shared<std::vector<TrimLoop>>& shared) {
   return true;
 }
 
-bool take_face(ByteReader& in, std::vector<ModelSurface>& faces) {
+Status put_placed(ByteWriter& out, const ModelSurface& face) {
+  const BSplineSurface* const spline = std::get_if<BSplineSurface>(&face.surface);
+  if (!spline) return Status(StatusCode::internal, "a surface of this kind has no form as bytes");
+  out.put_text(*face.name);
+  put_surface(out, *spline);
+  out.put(*face.placement);
+  put_loops(out, face.trims);
+  return {};
+}
+
+std::optional<ModelSurface> take_placed(ByteReader& in) {
   std::string name;
   std::optional<BSplineSurface> spline;
   Affine placement;
-  if (!in.take_list(name) || !take_surface(in, spline) || !in.take(placement)) return false;
+  if (!in.take_list(name) || !take_surface(in, spline) || !in.take(placement)) return {};
   ModelSurface face{std::move(name), *std::move(spline), placement};
-  if (!take_loops(in, face.trims) || !take_loops(in, face.outline) || !take_colour(in, face.colour)) return false;
-  faces.push_back(std::move(face));
-  return true;
+  if (!take_loops(in, face.trims)) return {};
+  return face;
 }
 
 }  // namespace
@@ -121,23 +130,38 @@ bool take_colour(ByteReader& in, std::optional<Colour>& colour) {
   return true;
 }
 
-Status put_faces(ByteWriter& out, std::span<const ModelSurface> faces) {
+Status put_surfaces(ByteWriter& out, std::span<const ModelSurface> surfaces) {
+  out.put_count(surfaces.size());
+  for (const ModelSurface& surface : surfaces)
+    if (Status status = put_placed(out, surface); !status.ok()) return status;
+  return {};
+}
+
+bool take_surfaces(ByteReader& in, std::vector<ModelSurface>& surfaces) {
+  return in.take_each(surfaces, [&](std::vector<ModelSurface>& list) {
+    std::optional<ModelSurface> surface = take_placed(in);
+    if (surface) list.push_back(*std::move(surface));
+    return surface.has_value();
+  });
+}
+
+Status put_faces(ByteWriter& out, std::span<const ShapeFace> faces) {
   out.put_count(faces.size());
-  for (const ModelSurface& face : faces) {
-    const BSplineSurface* const spline = std::get_if<BSplineSurface>(&face.surface);
-    if (!spline) return Status(StatusCode::internal, "a surface of this kind has no form as bytes");
-    out.put_text(*face.name);
-    put_surface(out, *spline);
-    out.put(*face.placement);
-    put_loops(out, face.trims);
+  for (const ShapeFace& face : faces) {
+    if (Status status = put_placed(out, face); !status.ok()) return status;
     put_loops(out, face.outline);
     put_colour(out, face.colour);
   }
   return {};
 }
 
-bool take_faces(ByteReader& in, std::vector<ModelSurface>& faces) {
-  return in.take_each(faces, [&](std::vector<ModelSurface>& list) { return take_face(in, list); });
+bool take_faces(ByteReader& in, std::vector<ShapeFace>& faces) {
+  return in.take_each(faces, [&](std::vector<ShapeFace>& list) {
+    std::optional<ModelSurface> surface = take_placed(in);
+    if (!surface) return false;
+    ShapeFace& face = list.emplace_back(ShapeFace{*std::move(surface)});
+    return take_loops(in, face.outline) && take_colour(in, face.colour);
+  });
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -18,7 +18,11 @@ void put_colour(ByteWriter& out, const std::optional<Colour>& colour);
 bool take_colour(ByteReader& in, std::optional<Colour>& colour);
 
 /// Errors: internal (a surface that is no B-spline).
-Status put_faces(ByteWriter& out, std::span<const ModelSurface> faces);
-bool take_faces(ByteReader& in, std::vector<ModelSurface>& faces);
+Status put_surfaces(ByteWriter& out, std::span<const ModelSurface> surfaces);
+bool take_surfaces(ByteReader& in, std::vector<ModelSurface>& surfaces);
+
+/// Errors: as put_surfaces().
+Status put_faces(ByteWriter& out, std::span<const ShapeFace> faces);
+bool take_faces(ByteReader& in, std::vector<ShapeFace>& faces);
 
 }  // namespace tessera::inline abi_0_1

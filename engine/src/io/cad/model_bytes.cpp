@@ -27,7 +27,7 @@ Status place(Model& model) {
 
 bool take_model(ByteReader& in, Model& model) {
   const auto take_text = [&](std::vector<std::string>& list) { return in.take_list(list.emplace_back()); };
-  return in.take_list(model.name) && take_faces(in, model.surfaces) && take_shapes(in, model.shapes) &&
+  return in.take_list(model.name) && take_surfaces(in, model.surfaces) && take_shapes(in, model.shapes) &&
          take_instances(in, model.instances) && (model.instances.empty() || model.surfaces.empty()) &&
          in.take_list(model.unit) && in.take_list(model.file_unit) && in.take_each(model.warnings, take_text);
 }
@@ -54,7 +54,7 @@ void put_status(ByteWriter& out, const Status& status) {
 Status put_model(ByteWriter& out, const Model& model) {
   out.put_text(model.name);
   const std::span<const ModelSurface> surfaces = model.surfaces;
-  if (Status status = put_faces(out, model.instances.empty() ? surfaces : surfaces.first(0)); !status.ok())
+  if (Status status = put_surfaces(out, model.instances.empty() ? surfaces : surfaces.first(0)); !status.ok())
     return status;
   if (Status status = put_shapes(out, model.shapes); !status.ok()) return status;
   put_instances(out, model.instances);
