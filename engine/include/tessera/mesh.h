@@ -92,7 +92,9 @@ struct MeshReport {
   std::size_t t_junctions = 0;         ///< vertices of open edges that lie inside another open edge
   /// Non-degenerate triangles that face away from the sum of their corners' normals.
   std::size_t flipped_triangles = 0;
-  std::size_t degenerate_triangles = 0;  ///< two corners in one place, or no area; not counted in edges
+  /// Two corners in one place, or no area. Edges of the former are not counted above; those of the latter are, because
+  /// a triangle that is a line closes the gap between one edge and two.
+  std::size_t degenerate_triangles = 0;
   std::size_t non_finite_vertices = 0;   ///< NaN or infinity in a position or a normal
   /// Whether there are non-degenerate triangles, and they leave no border.
   bool closed() const { return triangles > degenerate_triangles && open_edges == 0 && non_manifold_edges == 0; }

@@ -94,8 +94,8 @@ Result<Shared<std::vector<TrimLoop>>> grid_trims(const ModelSurface& surface);
 /// certified if all are. Patches that trimming loops cut away are left out: see PatchSetOptions::trims. A surface whose
 /// loops grid_trims() or TrimRegion::make() refuses is kept whole: see PatchSet::trim_faults().
 ///
-/// Errors: those of the conversions and of PatchSet::make(), as "surface 3 (rim): ..." (index = the surface);
-/// invalid_argument (loops cut away every patch).
+/// Errors: those of the conversions and of PatchSet::make(), as "surface 3 (rim): ..." (index = the surface); those of
+/// check_topology(); invalid_argument (loops cut away every patch).
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options = {}, const FitOptions& fit = {});
 /// Makes the same set of grids that to_bezier() has made of the model's surfaces, one each. Errors: as above,
 /// count_mismatch.

@@ -100,6 +100,10 @@ struct TessellationOptions {
   /// everywhere and the mesh has no normals. A shared vertex belongs to the patch that comes first, or to that
   /// which the others are welded to: its parameters are those of that patch.
   bool share_vertices = false;
+  /// Shapes: whether faces have the same vertices along their common edges, so that a closed shell has a closed mesh.
+  bool close_edges = true;
+  /// Shapes: edges along which the points of faces are farther apart than this stay open. A length, at least 0.
+  std::optional<double> max_gap = {};
   /// The largest number of triangles; a mesh that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
   /// Finds the tolerance: the smallest of the lengths 2^(k/128), 0.54 percent apart, for which max_triangles suffice,
@@ -273,6 +277,12 @@ class Tessellation {
   double pixels() const;
   /// Returns the proven pixels of each patch, 0 where nothing is seen; empty if pixels were not set.
   std::span<const float> pixel_bounds() const;
+  /// Returns the largest distance by which vertices had to leave a surface because the faces of a shape fail to meet:
+  /// every point of the mesh lies within bound() + gap() of a face, and the other way round. 0 without edges.
+  double gap() const;
+  /// Returns the largest such distance along each edge: of the first instance's shape, then the next; see
+  /// Model::instances. 0 where faces meet. Empty without edges.
+  std::span<const float> edge_gaps() const;
   /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
   /// and those made points.
   std::size_t welded_borders() const;

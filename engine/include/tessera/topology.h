@@ -22,6 +22,8 @@ namespace tessera::inline abi_0_1 {
 /// Errors: invalid_argument, as "shape 2 (nut): edge 7 ends at vertex 12, there are 12 vertices" (index = the shape or
 /// instance).
 Status check_topology(const Model& model);
+/// Checks one shape. Errors: as above, as "shape 0 (nut): ...".
+Status check_topology(const Shape& shape);
 
 /// Returns the faces of all instances in the model's space, one instance after the other: what Model::surfaces holds if
 /// there are instances.

@@ -4,18 +4,12 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "block/coedge_parameter.h"
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
-
-/// The parameter of the loop's curve at the edge's parameter s.
-double curve_parameter(const Coedge& coedge, const Curve& curve, double s) {
-  const Interval& d = curve.domain();
-  const double t = coedge.parameter ? position(*coedge.parameter, s).x : coedge.reversed ? d.from + d.to - s : s;
-  return std::clamp(t, d.from, d.to);
-}
 
 /// The parameter within [from, to] that is whole periods away.
 double wrapped(double value, double from, double to) {

@@ -9,10 +9,12 @@
 
 #include "base/impl_access.h"
 #include "base/text.h"
+#include "block/patch_edges.h"
 #include "block/patch_set_impl.h"
 #include "block/patch_trims.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
+#include "tessera/topology.h"
 #include "trim/grid_loops.h"
 #include "trim/trim_region_impl.h"
 
@@ -29,9 +31,12 @@ struct FaceTrims {
 /// Finds the trims of faces. Faces of equal loops over equal grids share them, as instances of a part do.
 class FaceTrimsFinder {
  public:
+  /// How far an outline may be off the sides of its domain, as a share of it.
+  static constexpr double outline_snap = 0x1p-13;
   /// Returns the trims of the next face, to stay until the next call.
-  Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid) {
-    const TrimOptions options = TrimRegion::Impl::options_of(grid);
+  Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid, bool is_outline) {
+    TrimOptions options = TrimRegion::Impl::options_of(grid);
+    if (is_outline) options.snap = outline_snap;
     const auto [first, last] = known_.equal_range(key_of(loops));
     for (auto known = first; known != last; ++known)
       if (known->second.is_for(loops, grid, options)) return &known->second.trims;
@@ -52,6 +57,7 @@ class FaceTrimsFinder {
     bool is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid, const TrimOptions& other) const {
       const CutLines& lines = impl_of(trims.region).lines;
       return options.periodic_u == other.periodic_u && options.periodic_v == other.periodic_v &&
+             options.snap == other.snap &&
              std::ranges::equal(lines.u.lines, grid.breaks_u()) && std::ranges::equal(lines.v.lines, grid.breaks_v()) &&
              std::ranges::equal(*loops, others, [](const TrimLoop& a, const TrimLoop& b) {
                return a.hole == b.hole && a.curves == b.curves;
@@ -211,20 +217,39 @@ class ModelPatches {
  public:
   ModelPatches(const Model& model, const PatchSetOptions& options) : model_(model), options_(options) {}
 
+  /// States that the surfaces from `first` on are the faces of a shape, which must outlive this object.
+  void name_edges(const Shape& shape, std::size_t first) {
+    if (shape.edges.empty() || !options_.trims) return;
+    faces_.resize(first + shape.faces.size());
+    for (std::size_t k = 0; k < shape.faces.size(); ++k)
+      faces_[first + k] = {&shape.faces[k], static_cast<std::uint32_t>(edges_.edges.size())};
+    const auto vertex = [&](std::uint32_t id) { return id == no_id ? no_id : edges_.vertex_count + id; };
+    for (const BrepEdge& edge : shape.edges)
+      edges_.edges.push_back({edge.range, vertex(edge.start), vertex(edge.end), edge.degenerate});
+    edges_.vertex_count += static_cast<std::uint32_t>(shape.vertices.size());
+  }
+
   /// Adds the next surface's patches.
   Status add(PatchGrid grid) {
-    const std::size_t k = ends_.size();
-    if (!options_.trims || model_.surfaces[k].trims->empty()) {
+    const std::size_t k = ends_.size(), first = all_.patches.size();
+    ModelSurface surface = model_.surfaces[k];
+    const NamedFace named = k < faces_.size() ? faces_[k] : NamedFace{};
+    const bool is_trimmed = !surface.trims->empty();
+    if (named.face && !is_trimmed) surface.trims = named.face->outline;
+    if (!options_.trims || surface.trims->empty()) {
       all_.add(k, std::move(grid));
     } else {
-      const Result<FaceTrims*> trims = trims_of(model_.surfaces[k], grid);
+      const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
+      const Result<FaceTrims*> trims = loops ? trims_.find(*loops, grid, !is_trimmed) : loops.status();
       if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
       if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
-      if (!trims || (*trims)->region.is_whole()) {
+      const std::size_t places = grid.patches().size();
+      if (!trims || (*trims)->region.is_whole() || !is_trimmed) {
         all_.add(k, std::move(grid));
       } else {
         all_.add_kept(k, grid, **trims);
       }
+      if (trims && named.face) add_edges(k, named.first_edge, *loops, **trims, first, places);
     }
     ends_.push_back(all_.patches.size());
     return {};
@@ -233,6 +258,7 @@ class ModelPatches {
   Result<PatchSet> packed() && {
     Result<PatchSet> set = std::move(all_).packed(options_);
     if (set) impl_of(*set).trim_faults = std::move(faults_);
+    if (set && !edges_.faces.empty()) impl_of(*set).edges = std::make_shared<const PatchEdges>(std::move(edges_));
     if (set || set.status().index() == Status::no_index) return set;
     const auto patch = static_cast<std::size_t>(set.status().index());
     const auto surface = std::upper_bound(ends_.begin(), ends_.end(), patch) - ends_.begin();
@@ -240,31 +266,53 @@ class ModelPatches {
   }
 
  private:
-  Result<FaceTrims*> trims_of(const ModelSurface& surface, const PatchGrid& grid) {
-    const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
-    if (!loops) return loops.status();
-    return trims_.find(*loops, grid);
+  struct NamedFace {
+    const ShapeFace* face = nullptr;
+    std::uint32_t first_edge = 0;
+  };
+
+  /// Notes the patches of a face whose loops name edges. `first`: its first patch.
+  void add_edges(std::size_t surface, std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops,
+                 const FaceTrims& trims, std::size_t first, std::size_t places) {
+    const auto names = [](const TrimLoop& loop) { return !loop.coedges.empty(); };
+    if (std::ranges::none_of(*loops, names)) return;
+    PatchEdges::Face face{static_cast<std::uint32_t>(surface), first_edge, loops, trims.region, {}};
+    face.patches.assign(places, no_id);
+    const bool is_whole = all_.patches.size() - first == places;
+    for (std::size_t place = 0; place < places; ++place)
+      if (is_whole || trims.uses[place] != PatchUse::out) face.patches[place] = static_cast<std::uint32_t>(first++);
+    edges_.faces.push_back(std::move(face));
   }
 
   const Model& model_;
   const PatchSetOptions& options_;
   Gathered all_;
   FaceTrimsFinder trims_;
+  std::vector<NamedFace> faces_;  ///< by surface, as far as there are any
+  PatchEdges edges_;
   std::vector<Status> faults_;
   std::vector<std::size_t> ends_;  ///< the end of each surface's patches
 };
+
+/// Converts all surfaces of a model and adds them to `patches`.
+Result<PatchSet> converted(const Model& model, const FitOptions& fit, ModelPatches patches) {
+  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+    Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
+    if (!grid) return in_surface(model, k, grid.status());
+    if (Status status = patches.add(*std::move(grid)); !status.ok()) return status;
+  }
+  return std::move(patches).packed();
+}
 
 }  // namespace
 
 Result<PatchSet> make_patch_set(const Model& model, const PatchSetOptions& options, const FitOptions& fit) {
   return guarded([&]() -> Result<PatchSet> {
+    if (Status status = check_topology(model); !status.ok()) return status;
     ModelPatches patches(model, options);
-    for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-      Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
-      if (!grid) return in_surface(model, k, grid.status());
-      if (Status status = patches.add(*std::move(grid)); !status.ok()) return status;
-    }
-    return std::move(patches).packed();
+    for (const Instance& instance : model.instances)
+      patches.name_edges(model.shapes[instance.shape], instance.first_surface);
+    return converted(model, fit, std::move(patches));
   });
 }
 
@@ -273,7 +321,10 @@ Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> g
     if (grids.size() != model.surfaces.size())
       return Status(StatusCode::count_mismatch,
                     "there are " + counted(grids.size(), "grid") + " for " + counted(model.surfaces.size(), "surface"));
+    if (Status status = check_topology(model); !status.ok()) return status;
     ModelPatches patches(model, options);
+    for (const Instance& instance : model.instances)
+      patches.name_edges(model.shapes[instance.shape], instance.first_surface);
     for (const PatchGrid& grid : grids)
       if (Status status = patches.add(grid); !status.ok()) return status;
     return std::move(patches).packed();
@@ -281,10 +332,13 @@ Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> g
 }
 
 Result<PatchSet> make_patch_set(const Shape& shape, const PatchSetOptions& options, const FitOptions& fit) {
-  return guarded([&] {
+  return guarded([&]() -> Result<PatchSet> {
+    if (Status status = check_topology(shape); !status.ok()) return status;
     Model faces;
     faces.surfaces.assign(shape.faces.begin(), shape.faces.end());
-    return make_patch_set(faces, options, fit);
+    ModelPatches patches(faces, options);
+    patches.name_edges(shape, 0);
+    return converted(faces, fit, std::move(patches));
   });
 }
 

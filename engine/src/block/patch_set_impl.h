@@ -60,6 +60,7 @@ struct Coefficients {
 };
 
 class MeshTables;
+struct PatchEdges;
 struct PatchTrims;
 
 class PatchSet::Impl {
@@ -80,6 +81,7 @@ class PatchSet::Impl {
   Vec3 origin;
   std::size_t surface_count = 0;
   std::shared_ptr<const PatchTrims> trims;  ///< null if no patch is cut
+  std::shared_ptr<const PatchEdges> edges;  ///< null if no face names edges
   std::vector<Status> trim_faults;          ///< one for each surface whose loops could not be used
   std::uint64_t revision = 0;
   std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit

@@ -85,8 +85,7 @@ Status check_shells(const Shape& shape, const Faults& fault) {
   return {};
 }
 
-Status check_shape(const Model& model, std::size_t k) {
-  const Shape& shape = model.shapes[k];
+Status check_shape(const Shape& shape, std::size_t k) {
   const Faults fault("shape", k, *shape.name);
   if (Status status = check_vertices(shape, fault); !status.ok()) return status;
   if (Status status = check_edges(shape, fault); !status.ok()) return status;
@@ -123,9 +122,13 @@ Status check_instances(const Model& model) {
 Status check_topology(const Model& model) {
   return guarded([&]() -> Status {
     for (std::size_t k = 0; k < model.shapes.size(); ++k)
-      if (Status status = check_shape(model, k); !status.ok()) return status;
+      if (Status status = check_shape(model.shapes[k], k); !status.ok()) return status;
     return check_instances(model);
   });
+}
+
+Status check_topology(const Shape& shape) {
+  return guarded([&] { return check_shape(shape, 0); });
 }
 
 Result<std::vector<ModelSurface>> placed_faces(std::span<const Shape> shapes, std::span<const Instance> instances) {

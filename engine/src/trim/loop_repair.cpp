@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -68,6 +69,8 @@ class LoopRepair {
       if (!encloses(k, *loop)) continue;
       all_holes = all_holes && loops_[k].hole;
       tell_excursion(k, loop->pieces);
+      move_inside(loop->pieces, lines_.u, &ParameterPoint::u);
+      move_inside(loop->pieces, lines_.v, &ParameterPoint::v);
       if ((loop->turns_u != 0 || loop->turns_v != 0) && turning_loop_ == none) turning_loop_ = k;
       turns_u_ += loop->turns_u;
       turns_v_ += loop->turns_v;
@@ -151,6 +154,26 @@ class LoopRepair {
     }
     if (size > std::max(lines_.u.snap, lines_.v.snap))
       tell(k, LoopFault::outside, size, "it leaves the surface's domain by " + text(size) + " and is cut off there");
+  }
+
+  /// Moves pieces that lie hardly outside onto the side there: domains are often the boxes of loops, up to the digits of
+  /// a file. So they remain parts of their curves.
+  static void move_inside(std::vector<TrimPiece>& pieces, const CutAxis& axis, Coordinate x) {
+    if (axis.periodic) return;
+    const double most = 0x1p-13 * axis.period();
+    for (TrimPiece& piece : pieces) {
+      const auto [lower, upper] = std::minmax({piece.start().*x, piece.end().*x});
+      if (lower >= axis.from() && upper <= axis.to()) continue;
+      if (lower < axis.from() - most || upper > axis.to() + most) continue;
+      double moved = 0;
+      for (ParameterPoint& point : piece.curve.points) {
+        const double inside = std::clamp(point.*x, axis.from(), axis.to());
+        moved = std::max(moved, std::abs(point.*x - inside));
+        point.*x = inside;
+      }
+      piece.error.*x += moved;
+      piece.exact_line = false;
+    }
   }
 
   /// Cuts off what lies beyond the sides of one direction, or on the seam of a periodic one, and closes the rest along

@@ -185,9 +185,11 @@ MeshReport count(const Mesh& mesh, const Places& places) {
   sound.reserve(report.triangles);
   const auto look_at = [&](const Triangle& corners) {
     const Triangle t{welded.place[corners[0]], welded.place[corners[1]], welded.place[corners[2]]};
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] || has_no_area(places, corners)) return;
-    sound.push_back(t);
-    report.flipped_triangles += !mesh.normals.empty() && is_flipped(mesh, places, corners);
+    const bool is_point = t[0] == t[1] || t[1] == t[2] || t[2] == t[0],
+               is_line = !is_point && has_no_area(places, corners);
+    report.degenerate_triangles += is_point || is_line;
+    if (!is_point) sound.push_back(t);  // a line fills a gap between edges whose vertices differ
+    report.flipped_triangles += !is_point && !is_line && !mesh.normals.empty() && is_flipped(mesh, places, corners);
   };
   for (auto corner = mesh.indices.begin(); corner != mesh.indices.end(); corner += 3)
     look_at({corner[0], corner[1], corner[2]});
@@ -195,7 +197,6 @@ MeshReport count(const Mesh& mesh, const Places& places) {
     look_at({corner[0], corner[1], corner[2]});
     look_at({corner[0], corner[2], corner[3]});
   }
-  report.degenerate_triangles = report.triangles - sound.size();
   std::vector<std::array<std::uint32_t, 2>> open;
   EdgeTable(sound, welded.count).count_into(report, open);
   std::vector<Vec3> distinct(welded.count);

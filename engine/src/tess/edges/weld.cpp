@@ -178,6 +178,7 @@ class Welder {
     std::vector<EdgePlace> places;
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
       if (leading_[edge] == none || (has_more_[edge] && rules_.is_relative)) continue;
+      if (!rules_.stay.empty() && rules_.stay[leading_[edge]]) continue;
       const auto [first, last] = ends_of(leading_[edge]);
       const BezierPatch& patch = set_.patches[patch_of(first)];
       places.emplace_back(edge,

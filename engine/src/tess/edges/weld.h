@@ -62,6 +62,8 @@ struct WeldRules {
   /// all other borders of their edges, and to all other corners that meet there: the packed control points are the same
   /// bits, but such vertices may differ.
   std::span<const std::uint8_t> f64_patches = {};
+  /// `[4 * patch + side]`: 1 for borders that are joined by their bits alone; empty if for none.
+  std::span<const std::uint8_t> stay = {};
 };
 
 /// Welds borders.

@@ -11,6 +11,7 @@
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/plan/joins.h"
+#include "tess/write/closed_vertices.h"
 #include "tess/write/cut_vertices.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
@@ -131,7 +132,9 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .pixels = plan_.pixels(),
           .welded_borders = welded_borders_,
           .open_edges = plan_.open_edges(),
-          .crossed = plan_.crossed()};
+          .crossed = plan_.crossed(),
+          .gap = plan_.closed() ? plan_.closed()->gap : 0,
+          .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>()};
 }
 
 Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution) {
@@ -190,7 +193,9 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   }
   if (Status status = write_copies(impl_of(set), out, execution, [](std::size_t) { return true; }); !status.ok())
     return status;
-  return write_cut(impl_of(set), plan_, options_.crease_angle, out, execution);
+  if (Status status = write_cut(impl_of(set), plan_, options_.crease_angle, out, execution); !status.ok())
+    return status;
+  return plan_.closed() ? write_closed(impl_of(set), plan_, out, execution) : Status();
 }
 
 }  // namespace tessera::inline abi_0_1

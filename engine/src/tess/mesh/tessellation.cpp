@@ -57,6 +57,8 @@ std::size_t Tessellation::patches_without_angle() const {
       std::ranges::count_if(impl_->proof().angles, [](float angle) { return std::isinf(angle); }));
 }
 std::span<const float> Tessellation::angles() const { return impl_->proof().angles; }
+double Tessellation::gap() const { return impl_->proof().gap; }
+std::span<const float> Tessellation::edge_gaps() const { return impl_->proof().edge_gaps; }
 double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
 std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }

@@ -19,6 +19,8 @@ class Tessellation::Impl {
     std::span<const float> bounds = {}, angles = {}, pixels = {};
     std::size_t welded_borders = 0, open_edges = 0;
     std::span<const std::uint32_t> crossed = {};
+    double gap = 0;
+    std::span<const float> edge_gaps = {};
   };
 
   Impl();

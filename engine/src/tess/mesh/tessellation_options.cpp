@@ -52,7 +52,11 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
                text(set.box().diagonal()));
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
     return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
+  if (options.max_gap && !(*options.max_gap >= 0))
+    return bad("the largest gap is " + text(*options.max_gap) + ", it must be at least 0");
   PlannerOptions planner;
+  planner.closes_edges = options.close_edges && !options.share_vertices;
+  planner.max_gap = options.max_gap.value_or(std::numeric_limits<double>::infinity());
   if (options.weld) {
     planner.weld.reach = weld;
   } else if (options.tolerance && !options.relative) {

@@ -101,6 +101,9 @@ double CertifiedPlanner::own_rounding(const BlockGroup& group, PatchSet::Slot sl
 
 void CertifiedPlanner::find_weld() {
   WeldRules rules = options_.weld;
+  std::vector<std::uint8_t> stay;
+  if (runs_) stay = runs_->borders_that_meet(shapes_.size());
+  rules.stay = stay;
   rules.f64_patches = options_.f64_patches;
   if (options_.f64_positions) {
     // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
@@ -366,10 +369,11 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
   plan.set_f64_patches(options_.f64_patches);
   plan.has_f64_positions_ = options_.f64_positions;
   if (Status status = choose_rates(request, plan, execution); !status.ok()) return status;
-  if (set_->trims) {
+  if (!set_->trims) divide(request.tolerance, plan);
+  if (runs_) {
+    if (Status status = close_edges(request, plan, execution); !status.ok()) return status;
+  } else if (set_->trims) {
     if (Status status = divide_and_cut(request, plan, execution); !status.ok()) return status;
-  } else {
-    divide(request.tolerance, plan);
   }
   plan.lay_out();
   return plan;

@@ -16,6 +16,8 @@
 #include "tess/bounds/picture.h"
 #include "tess/bounds/rounded_up.h"
 #include "tess/cells/stitched_patch.h"
+#include "tess/closing/closed_edges.h"
+#include "tess/closing/edge_stops.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
 #include "tess/trimmed/cut_patch.h"
@@ -46,6 +48,8 @@ class CertifiedPlan {
   std::span<const CutPatch> cuts() const { return rare_ ? rare_->cuts : std::span<const CutPatch>(); }
   /// Cut patches without triangles, because their chords cross.
   std::span<const std::uint32_t> crossed() const { return rare_ ? rare_->crossed : std::span<const std::uint32_t>(); }
+  /// The vertices that faces share along edges; null if the set has no edges.
+  const ClosedEdges* closed() const { return rare_ && rare_->closed ? &*rare_->closed : nullptr; }
   /// Whether a set has the loops that the plan was made for.
   bool has_trims_of(const PatchSet::Impl& set) const {
     return rare_ ? rare_->trims == set.trims : set.trims == nullptr;
@@ -107,6 +111,7 @@ class CertifiedPlan {
     std::shared_ptr<const PatchTrims> trims;  ///< those of the set
     std::vector<CutPatch> cuts;
     std::vector<std::uint32_t> crossed;
+    std::optional<ClosedEdges> closed;
   };
   std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, and no vertices come from doubles
   std::uint32_t open_edges_ = 0;
@@ -129,6 +134,8 @@ struct PlannerOptions {
   std::optional<Camera> camera;
   double pixels = 0;  ///< above 0 if there is a camera
   bool fewest = false;
+  bool closes_edges = true;  ///< whether faces get the same vertices along the edges of shapes
+  double max_gap = std::numeric_limits<double>::infinity();  ///< of edges that are closed
   bool keeps_bounds = false;  ///< keeps the bounds of angles, half a KiB per patch, for many plans of one planner
 };
 
@@ -200,6 +207,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< for tolerances that messages propose
     double share = 1;      ///< the part of what the limits leave that cells may take
     bool uniform = false;  ///< whether segments are of one length
+    double cut_share = 1;  ///< the part of the tolerance that cut patches may take before edges are closed
   };
   /// Makes a plan without a limit on its triangles.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
@@ -246,6 +254,13 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::string wanted(double tolerance) const;
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
+  /// Finds what chords along edges must keep for the faces on both sides, as patches are divided now.
+  Status find_stops(const Request& request, const CertifiedPlan& plan, EdgeStops& stops, const Execution& execution)
+      const;
+  /// Gives faces the same vertices along the edges of shapes.
+  Status close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
+  /// `[4 * patch + side]`: whether triangles of two patches have the same border.
+  std::vector<std::uint8_t> joined_borders(const CertifiedPlan& plan) const;
   bool is_cut(std::size_t patch) const { return set_->trims && set_->trims->is_cut[patch]; }
   /// Finds the sides of faces that loops cut, and keeps their patches from being divided as whole ones.
   void find_cut_faces();
@@ -267,7 +282,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The error of a tolerance that loops cannot keep.
   Status too_rough(const Request& request, std::size_t patch) const;
   /// Finds the borders of whole patches along the sides of cut ones.
-  void find_same_borders(CertifiedPlan & plan) const;
+  void find_same_borders(CertifiedPlan& plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
@@ -284,6 +299,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double fit_error_;
   std::vector<PatchShape> shapes_, drawn_;  ///< drawn_: empty if no patch is cut
   std::vector<FaceSides> face_sides_;       ///< by region of the set's trims
+  std::optional<EdgeRuns> runs_;            ///< if edges are closed
+  std::vector<std::uint32_t> cut_faces_;    ///< by cut patch: into PatchEdges::faces, or no_id; empty without runs_
   Weld weld_;
   double largest_rounding_ = 0;    ///< the largest rounding of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding

@@ -21,6 +21,9 @@ void CertifiedPlan::lay_out() {
   auto cut = cuts.begin();
   std::size_t next_cut = cuts.empty() ? patches : cut->patch;
   const bool shares = shares_vertices();
+  const std::span<const PatchEdit> edits =
+      closed() ? std::span<const PatchEdit>(closed()->edits) : std::span<const PatchEdit>();
+  auto edit = edits.begin();
   for (std::size_t patch = 0; patch < patches; ++patch) {
     const Division& division = divisions_[patch];
     first_vertex_[patch] = vertices;
@@ -30,6 +33,11 @@ void CertifiedPlan::lay_out() {
       vertices += division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count());
     triangles += division.triangle_count();
     quads += division.cell_count();
+    if (edit != edits.end() && edit->patch == patch) {
+      vertices += edit->vertices.size();
+      triangles += edit->added.size();
+      ++edit;
+    }
     if (patch != next_cut) continue;
     vertices += cut->vertices.size();
     triangles += cut->triangles.size();

@@ -33,10 +33,17 @@ constexpr std::size_t cuts_per_task = 4;
 }  // namespace
 
 void CertifiedPlanner::find_cut_faces() {
+  if (set_->edges && options_.closes_edges) runs_.emplace(*set_);
   if (!set_->trims) return;
   drawn_ = shapes_;
   for (const PatchTrims::Cut& cut : set_->trims->cuts) drawn_[cut.patch].is_curve = true;
   for (const TrimRegion& region : set_->trims->regions) face_sides_.emplace_back(region);
+  if (!runs_) return;
+  std::vector<std::uint32_t> faces(set_->patches.size(), no_id);
+  for (std::uint32_t face = 0; face < set_->edges->faces.size(); ++face)
+    for (const std::uint32_t patch : set_->edges->faces[face].patches)
+      if (patch != no_id) faces[patch] = face;
+  for (const PatchTrims::Cut& cut : set_->trims->cuts) cut_faces_.push_back(faces[cut.patch]);
 }
 
 CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const Request& request,
@@ -49,7 +56,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
   room.given = roundings_[patch] + 0x1p-51 * (room.limits.speed.u + room.limits.speed.v) + fit_error_;
   for (const CutPatch::SameBorder& same : cut.same)
     if (same.border != CutPatch::none) room.given = std::max(room.given, roundings_[same.border / 4] + fit_error_);
-  room.tolerance = request.tolerance;
+  room.tolerance = request.cut_share * request.tolerance;
   double sliver = std::numeric_limits<double>::infinity();
   if (options_.camera) {
     const ScreenSpaceBound& picture = pictures_[patch];
@@ -67,6 +74,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
   room.limits.room = std::isfinite(room.tolerance) ? room.tolerance - room.given : room.tolerance;
   room.limits.in_cells = options_.angle || options_.camera;
   room.limits.rounding = {&set_->patches[patch], set_->origin, options_.f64_positions, roundings_[patch]};
+  room.limits.domain = set_->sources[patch].domain;
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
 }
@@ -132,20 +140,34 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
   plan.rare_->trims = set_->trims;
   plan.rare_->cuts.resize(cuts.size());
+  plan.rare_->crossed.clear();
   for (std::size_t c = 0; c < cuts.size(); ++c) plan.rare_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
+  std::vector<std::uint8_t> borders(edges_.count(), 0);
+  for (const std::uint32_t edge : edges_.of_borders())
+    if (edge != SharedEdges::none) borders[edge] += borders[edge] < 2;
   std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
     const std::vector<Division> before = std::move(plan.divisions_);
     plan.divisions_.clear();
     divide(request.tolerance, plan);
+    EdgeStops stops(runs_ ? set_->edges->edges.size() : 0);
+    if (runs_)
+      if (Status status = find_stops(request, plan, stops, execution); !status.ok()) return status;
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
+      std::vector<double> list;
       for (std::size_t c = begin; c < end; ++c) {
         const std::size_t k = cuts[c].patch;
         if (excess[c] <= 1 && before[k] == plan.divisions_[k]) continue;
-        const CutRoom room = room_of(plan.rare_->cuts[c], request, plan);
+        CutRoom room = room_of(plan.rare_->cuts[c], request, plan);
+        for (const Side side : all_sides) {
+          const std::uint32_t edge = edges_.edge(k, side);
+          room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && borders[edge] == 2;
+        }
+        const auto stops_of = [&](const TrimPiece& piece) { return stops.list(*runs_, cut_faces_[c], piece, list); };
+        if (runs_ && cut_faces_[c] != no_id) room.limits.stops = stops_of;
         maker.make(set_->trims->regions[cuts[c].region], face_sides_[cuts[c].region], cuts[c], room.limits,
                    plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.rare_->cuts[c]);
         excess[c] = bound_cut(room, plan.rare_->cuts[c], plan);

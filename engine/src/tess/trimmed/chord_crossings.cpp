@@ -34,14 +34,16 @@ std::optional<ParameterPoint> crossing(const Segment& p, const Segment& q) {
 
 }  // namespace
 
-bool ChordCrossings::divide(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords) {
+bool ChordCrossings::divide(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords,
+                            std::vector<std::uint32_t>& marks) {
   constexpr int most = 16;
   for (int pass = 0; pass < most; ++pass)
-    if (!divide_once(points, chords)) return true;
+    if (!divide_once(points, chords, marks)) return true;
   return false;
 }
 
-bool ChordCrossings::divide_once(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords) {
+bool ChordCrossings::divide_once(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords,
+                                 std::vector<std::uint32_t>& marks) {
   const auto segment = [&](std::uint32_t k) { return Segment{points[chords[k].start], points[chords[k].end]}; };
   order_.resize(chords.size());
   std::iota(order_.begin(), order_.end(), 0u);
@@ -70,18 +72,19 @@ bool ChordCrossings::divide_once(std::vector<ParameterPoint>& points, std::vecto
     const double a = place(x.second), b = place(y.second);
     return a != b ? a < b : x.second < y.second;
   });
-  next_.clear();
+  next_.clear(), next_marks_.clear();
   auto cut = divided_.begin();
   for (std::uint32_t k = 0; k < chords.size(); ++k) {
     std::uint32_t last = chords[k].start;
     const auto add = [&](std::uint32_t end) {
-      if (!(points[last] == points[end])) next_.push_back({last, end});
+      if (!(points[last] == points[end])) next_.push_back({last, end}), next_marks_.push_back(marks[k]);
       last = end;
     };
     for (; cut != divided_.end() && cut->first == k; ++cut) add(cut->second);
     add(chords[k].end);
   }
   chords = next_;
+  marks = next_marks_;
   return true;
 }
 

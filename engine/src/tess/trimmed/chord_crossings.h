@@ -16,15 +16,20 @@ class ChordCrossings {
   /// cross. Parity is that of the chords as given, but for slivers of a few units in the last place.
   ///
   /// Time: O(n log n) for n chords, plus the pairs whose boxes overlap along u.
-  bool divide(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords);
+  ///
+  /// `marks`: one per chord; parts of a chord have its mark.
+  bool divide(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords,
+              std::vector<std::uint32_t>& marks);
 
  private:
   /// Divides once. Returns whether any chords crossed.
-  bool divide_once(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords);
+  bool divide_once(std::vector<ParameterPoint>& points, std::vector<PlaneSegment>& chords,
+                   std::vector<std::uint32_t>& marks);
 
   std::vector<std::uint32_t> order_;                              ///< chords by growing u
   std::vector<std::pair<std::uint32_t, std::uint32_t>> divided_;  ///< chord, point inside it
   std::vector<PlaneSegment> next_;
+  std::vector<std::uint32_t> next_marks_;
 };
 
 }  // namespace tessera::inline abi_0_1

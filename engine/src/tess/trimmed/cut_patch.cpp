@@ -41,6 +41,7 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   const std::size_t a = cut.place / impl.count_v(), b = cut.place % impl.count_v();
   limits.domain = {impl.lines.u.lines[a], impl.lines.u.lines[a + 1], impl.lines.v.lines[b], impl.lines.v.lines[b + 1]};
   out.vertices.clear(), out.triangles.clear(), out.on_borders.clear();
+  out.loop_segments.clear(), out.side_vertices.clear();
   out.distance = out.sliver = 0;
   out.widest = {max_rate - 1, max_rate - 1};
   const double sliver = limits.sliver;
@@ -55,11 +56,11 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
     out.open_edges = 0;
     return;
   }
-  number(collapsed, out);
+  number(collapsed, limits.stops.has_value(), out);
   refine(limits, chord, out);
   merge(limits, out);
   measure(limits.segments, chord, out);
-  find_border_vertices(borders, limits.domain, out);
+  find_border_vertices(borders, limits.domain, limits.stops.has_value(), out);
 }
 
 bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
@@ -88,7 +89,7 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
     if (out.is_full[s]) continue;
     for (const SidePoint& point : points) {
       const bool is_kept = above ? point.above : point.below, has_other = above ? point.below : point.above;
-      out.open_edges += is_kept && (lines.is_outer(line) || !has_other);
+      out.open_edges += is_kept && (lines.is_outer(line) ? !limits.is_shared[s] : !has_other);
     }
   }
   out.open_edges += static_cast<std::uint32_t>(cutter_.add_pieces(impl.pieces, impl.pieces_of(place)));
@@ -96,19 +97,19 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
 }
 
 // Vertices that no triangle uses are left out, and so are triangles without an area at a collapsed border.
-void CutPatchMaker::number(EdgeMask collapsed, CutPatch& out) {
+void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) {
   CutCells& cells = cutter_.cells();
   const std::size_t first = cutter_.loop_vertex_count(), count = cutter_.vertex_count();
   numbers_.assign(count, CutPatch::none);
   points_.clear();
-  poles_.fill(CutPatch::none);
+  out.poles.fill(CutPatch::none);
   const auto add = [&](std::uint32_t vertex) {
     ParameterPoint at = cutter_.local(vertex);
     for (const Side side : all_sides) {
       const double across = runs_along_u(side) ? at.v : at.u;
       const bool is_on = across == (side == Side::u1 || side == Side::v1 ? 1 : 0);
       if (!is_on || !collapsed.has(edge_of(side))) continue;
-      std::uint32_t& pole = poles_[static_cast<std::size_t>(side)];
+      std::uint32_t& pole = out.poles[static_cast<std::size_t>(side)];
       if (pole != CutPatch::none) return pole;
       pole = static_cast<std::uint32_t>(out.vertices.size());
       (runs_along_u(side) ? at.u : at.v) = 0;
@@ -134,16 +135,22 @@ void CutPatchMaker::number(EdgeMask collapsed, CutPatch& out) {
                       std::uint32_t s) { put(p, q, r), put(p, r, s); });
   band_ = out.triangles.size();
   for (const CutPatch::Triangle& triangle : cells.band()) put(triangle[0], triangle[1], triangle[2]);
+  if (!names_edges) return;
+  cutter_.for_loop_chords([&](const LoopChord& chord) {
+    const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
+    if (start != CutPatch::none && end != CutPatch::none)
+      out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to, chord.has_curve});
+  });
 }
 
-CutPatchMaker::Box CutPatchMaker::box_of(const CutPatch& out, const CutPatch::Triangle& triangle) const {
+CutPatch::Box CutPatch::box_of(const Triangle& triangle) const {
   Box box;
   const auto is_pole = [&](std::uint32_t corner, bool along_u) {
-    const auto pole = [&](Side side) { return poles_[static_cast<std::size_t>(side)] == corner; };
+    const auto pole = [&](Side side) { return poles[static_cast<std::size_t>(side)] == corner; };
     return along_u ? pole(Side::v0) || pole(Side::v1) : pole(Side::u0) || pole(Side::u1);
   };
   for (const std::uint32_t corner : triangle) {
-    const ParameterPoint& at = out.vertices[corner];
+    const ParameterPoint& at = vertices[corner];
     if (!is_pole(corner, true)) box.u0 = std::min(box.u0, at.u), box.u1 = std::max(box.u1, at.u);
     if (!is_pole(corner, false)) box.v0 = std::min(box.v0, at.v), box.v1 = std::max(box.v1, at.v);
   }
@@ -151,8 +158,14 @@ CutPatchMaker::Box CutPatchMaker::box_of(const CutPatch& out, const CutPatch::Tr
 }
 
 // Bounds of a half or a quarter hold for triangles within it. A parameter is off by three roundings.
-double CutPatchMaker::Box::distance(const ChordBound& chord) const {
+double CutPatch::Box::distance(const ChordBound& chord) const {
   return chord.pieces()[piece_of(u0, u1, v0, v1)].chord(width() + 0x1p-24, height() + 0x1p-24);
+}
+
+void CutPatch::measure(const Triangle& triangle, const ChordBound& chord) {
+  const Box box = box_of(triangle);
+  distance = std::max(distance, box.distance(chord));
+  widest = {std::min(widest.u, rate_of(box.width())), std::min(widest.v, rate_of(box.height()))};
 }
 
 void CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out) {
@@ -162,12 +175,12 @@ void CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, 
   const double width = 1.0 / limits.segments.u.rate(), height = 1.0 / limits.segments.v.rate();
   constexpr double rounded = 1 + 0x1p-40;
   const auto is_large = [&](const CutPatch::Triangle& triangle) {
-    const Box box = box_of(out, triangle);
+    const CutPatch::Box box = out.box_of(triangle);
     const bool is_wide = box.width() > rounded * width || box.height() > rounded * height;
     return (limits.in_cells && is_wide) || (std::isfinite(room) && !(box.distance(chord) <= room));
   };
   const auto length = [&](std::uint32_t a, std::uint32_t b) {
-    const Box box = box_of(out, {a, b, b});
+    const CutPatch::Box box = out.box_of({a, b, b});
     return std::max(box.width() / width, box.height() / height);
   };
   refiner_.run(out.vertices, out.triangles, band_, is_large, length);
@@ -201,10 +214,12 @@ void CutPatchMaker::compact(std::span<const std::uint32_t> kept, CutPatch& out) 
   out.vertices.resize(count);
   points_.resize(count);
   const auto moved = [&](std::uint32_t vertex) { return places[kept[vertex]]; };
-  for (std::uint32_t& pole : poles_)
+  for (std::uint32_t& pole : out.poles)
     if (pole != CutPatch::none) pole = moved(pole);
   for (CutPatch::Triangle& triangle : out.triangles)
     for (std::uint32_t& corner : triangle) corner = moved(corner);
+  for (CutPatch::LoopSegment& segment : out.loop_segments)
+    segment.start = moved(segment.start), segment.end = moved(segment.end);
 }
 
 void CutPatchMaker::measure(PatchSegments segments, const ChordBound& chord, CutPatch& out) {
@@ -215,15 +230,12 @@ void CutPatchMaker::measure(PatchSegments segments, const ChordBound& chord, Cut
     const Rates coarsest = segments.coarsest();
     width = 1.0 / coarsest.u, height = 1.0 / coarsest.v;
   }
-  for (std::size_t t = band_; t < out.triangles.size(); ++t) {
-    const Box box = box_of(out, out.triangles[t]);
-    out.distance = std::max(out.distance, box.distance(chord));
-    width = std::max(width, box.width()), height = std::max(height, box.height());
-  }
   out.widest = {rate_of(width), rate_of(height)};
+  for (std::size_t t = band_; t < out.triangles.size(); ++t) out.measure(out.triangles[t], chord);
 }
 
-void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, CutPatch& out) {
+void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, bool all,
+                                         CutPatch& out) {
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
     const bool along_u = runs_along_u(side);
@@ -234,11 +246,28 @@ void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders,
     for (std::uint32_t vertex = 0; vertex < out.vertices.size(); ++vertex) {
       if ((along_u ? out.vertices[vertex].v : out.vertices[vertex].u) != across) continue;
       const double at = along_u ? points_[vertex].u : points_[vertex].v;
+      if (all && !std::isnan(at)) out.side_vertices.push_back({vertex, side, at});
       const auto line = std::ranges::lower_bound(lines_, at);
       if (line != lines_.end() && *line == at)
         out.on_borders.push_back({vertex, static_cast<std::uint16_t>(line - lines_.begin()), side});
     }
   }
+  // A pole is also the end of the sides beside it.
+  for (std::size_t side = 0; all && side < 4; ++side) {
+    const std::uint32_t pole = out.poles[side];
+    if (pole == CutPatch::none) continue;
+    const Side beside = all_sides[side];
+    const bool along_u = runs_along_u(beside);
+    const double at = beside == Side::v0   ? domain.v0
+                      : beside == Side::v1 ? domain.v1
+                      : beside == Side::u0 ? domain.u0
+                                           : domain.u1;
+    std::erase_if(out.side_vertices,
+                  [&](const CutPatch::SideVertex& v) { return v.vertex == pole && v.side != beside; });
+    for (const Side other : along_u ? std::array{Side::u0, Side::u1} : std::array{Side::v0, Side::v1})
+      out.side_vertices.push_back({pole, other, at});
+  }
+  std::ranges::sort(out.side_vertices, {}, [](const CutPatch::SideVertex& v) { return std::pair(v.side, v.along); });
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -24,6 +24,19 @@ struct CutPatch {
     std::uint16_t at;
     Side side;
   };
+  /// A chord of a loop's curve, and its ends.
+  struct LoopSegment {
+    std::uint32_t piece = 0;           ///< of the region
+    std::uint32_t start = 0, end = 0;  ///< vertices; equal where rounding puts them in one place
+    double from = 0, to = 0;           ///< parameters of the caller's curve
+    bool has_curve = false;            ///< else it is a line that closes a gap between two curves
+  };
+  /// A vertex on a side, at `along`, the surface's parameter along it.
+  struct SideVertex {
+    std::uint32_t vertex;
+    Side side;
+    double along;
+  };
   /// The border of a whole patch that has the same points as a side.
   struct SameBorder {
     std::uint32_t border = none;  ///< 4 * patch + side
@@ -35,12 +48,27 @@ struct CutPatch {
   std::vector<ParameterPoint> vertices;  ///< in the patch's own parameters; those of its grid come first, line by line
   std::vector<Triangle> triangles;       ///< counter-clockwise in the parameters
   std::vector<BorderVertex> on_borders;
+  /// If the loops name edges: the chords along them, and all vertices on sides, by sides and places.
+  std::vector<LoopSegment> loop_segments;
+  std::vector<SideVertex> side_vertices;
   std::array<bool, 4> is_full{};   ///< by Side: the loops keep all of it, and none ends on it
   std::array<SameBorder, 4> same;  ///< by Side
   /// Edges along loops, and on parts of sides that no neighbour has; where loops cross, before they are divided.
   std::uint32_t open_edges = 0;
   double distance = 0, sliver = 0;  ///< the largest distance of a triangle, and of a sliver between chords and curves
   Rates widest;                     ///< odd rates at which cells are no smaller than the box of any triangle
+  std::array<std::uint32_t, 4> poles{none, none, none, none};  ///< by Side: the vertex of a collapsed border
+
+  /// The box of a triangle's parameters. A pole has every parameter along its border, so it does not count there.
+  struct Box {
+    double u0 = 1, u1 = 0, v0 = 1, v1 = 0;
+    double width() const { return u1 - u0; }
+    double height() const { return v1 - v0; }
+    double distance(const ChordBound& chord) const;
+  };
+  Box box_of(const Triangle& triangle) const;
+  /// Extends `distance` and `widest` to a triangle.
+  void measure(const Triangle& triangle, const ChordBound& chord);
 };
 
 /// The sides of all patches of a face.
@@ -62,7 +90,7 @@ class CutPatchMaker {
  private:
   bool run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
            const std::array<Segments, 4>& borders, CutPatch& out);
-  void number(EdgeMask collapsed, CutPatch& out);
+  void number(EdgeMask collapsed, bool names_edges, CutPatch& out);
   /// Halves the triangles of the band that are too large.
   void refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
   /// Merges vertices that rounding puts in one place, and leaves out the triangles between them.
@@ -70,22 +98,13 @@ class CutPatchMaker {
   /// Leaves out vertices that others replace. `kept`: by vertex, the one that stays.
   void compact(std::span<const std::uint32_t> kept, CutPatch& out);
   void measure(PatchSegments segments, const ChordBound& chord, CutPatch& out);
-  /// The box of a triangle's parameters. A pole has every parameter along its border, so it does not count there.
-  struct Box {
-    double u0 = 1, u1 = 0, v0 = 1, v1 = 0;
-    double width() const { return u1 - u0; }
-    double height() const { return v1 - v0; }
-    double distance(const ChordBound& chord) const;
-  };
-  Box box_of(const CutPatch& out, const CutPatch::Triangle& triangle) const;
-  void find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, CutPatch& out);
+  void find_border_vertices(const std::array<Segments, 4>& borders, const Domain& domain, bool all, CutPatch& out);
 
   PatchCutter cutter_;
   std::vector<std::uint32_t> numbers_;  ///< by vertex of the cutter
   std::vector<ParameterPoint> points_;  ///< by vertex of the patch, in the surface's parameters
   std::vector<double> lines_;
-  std::array<std::uint32_t, 4> poles_{};  ///< by Side: the vertex of a collapsed border, or none
-  std::size_t band_ = 0;                  ///< the first triangle of the band
+  std::size_t band_ = 0;  ///< the first triangle of the band
   BandRefiner refiner_;
   VertexMerger merger_;
 };

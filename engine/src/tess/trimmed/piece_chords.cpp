@@ -1,22 +1,126 @@
 #include "tess/trimmed/piece_chords.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tessera::inline abi_0_1 {
+namespace {
 
-double PieceChords::append(std::span<const TrimPiece> chain, const ChordLimits& limits,
-                           std::vector<ParameterPoint>& points) {
+/// Divides a piece at x, 0 < x < 1: `piece` becomes the part before. Returns the part after it.
+TrimPiece divide_at(TrimPiece& piece, double x) {
+  TrimPiece after = piece;
+  const ParameterPoint origin = piece.start();
+  const double y = 1 - x;
+  const std::size_t last = piece.curve.points.size() - 1;
+  const bool rational = !piece.curve.weights.empty();
+  std::array<double, max_degree + 1> u, v, w;
+  for (std::size_t k = 0; k <= last; ++k) {
+    w[k] = piece.curve.weight(k);
+    u[k] = w[k] * (piece.curve.points[k].u - origin.u);
+    v[k] = w[k] * (piece.curve.points[k].v - origin.v);
+  }
+  const auto point = [&](std::size_t k) {
+    return ParameterPoint{std::clamp(origin.u + u[k] / w[k], piece.lower_u(), piece.upper_u()),
+                          std::clamp(origin.v + v[k] / w[k], piece.lower_v(), piece.upper_v())};
+  };
+  std::array<ParameterPoint, max_degree + 1> before;
+  std::array<double, max_degree + 1> before_weights;
+  for (std::size_t level = 1; level <= last; ++level) {
+    for (std::size_t k = 0; k + level <= last; ++k)
+      u[k] = y * u[k] + x * u[k + 1], v[k] = y * v[k] + x * v[k + 1], w[k] = y * w[k] + x * w[k + 1];
+    before[level] = point(0), before_weights[level] = w[0];
+  }
+  for (std::size_t k = 0; k < last; ++k) {
+    after.curve.points[k] = point(k);
+    piece.curve.points[k + 1] = before[k + 1];
+    if (!rational) continue;
+    after.curve.weights[k] = w[k];
+    piece.curve.weights[k + 1] = before_weights[k + 1];
+  }
+  const double middle = piece.range.from + x * (piece.range.to - piece.range.from);
+  after.range.from = piece.range.to = middle;
+  const auto rounding = [](double a, double b) { return 0x1p-51 * std::max(std::abs(a), std::abs(b)); };
+  for (TrimPiece* const part : {&piece, &after}) {
+    part->error.u += rounding(part->start().u, part->end().u);
+    part->error.v += rounding(part->start().v, part->end().v);
+    part->exact_line = false;
+  }
+  return after;
+}
+
+}  // namespace
+
+// Parts of one piece between two stops are divided as they are; only parts that go on into other pieces become pieces.
+double PieceChords::append(std::span<const TrimPiece> chain, const ChordStops& stops, const ChordLimits& limits,
+                           std::vector<ParameterPoint>& points, std::vector<double>& parameters) {
+  double most = 0;
+  const auto end_parts = [&] {
+    if (!parts_.empty()) most = std::max(most, append(parts_, limits, points, parameters));
+    parts_.clear();
+  };
+  parts_.clear();
+  auto stop = std::ranges::upper_bound(stops.at, chain.front().range.from + stops.same);
+  for (const TrimPiece& piece : chain) {
+    const double from = piece.range.from, to = piece.range.to;
+    while (stop != stops.at.end() && *stop <= from + stops.same) ++stop;
+    const auto first = stop;
+    while (stop != stops.at.end() && *stop < to - stops.same) ++stop;
+    const std::span<const double> inside(first, stop);
+    const bool ends = &piece == &chain.back() || (stop != stops.at.end() && *stop <= to + stops.same);
+    if (inside.empty() && (!ends || !parts_.empty())) {
+      parts_.push_back(piece);
+      if (ends) end_parts();
+      continue;
+    }
+    const auto place = [&](double t) { return (t - from) / (to - from); };
+    std::size_t begin = 0, end = inside.size();  // of the stops between which parts are divided as they are
+    TrimPiece rest = piece;
+    double at = 0;
+    if (!parts_.empty()) {
+      at = place(inside[begin++]);
+      TrimPiece after = divide_at(rest, at);
+      parts_.push_back(std::move(rest));
+      end_parts();
+      rest = std::move(after);
+    }
+    begin_chords(limits, points, parameters);
+    if (!ends && begin < end) {
+      const double last = place(inside[end - 1]);
+      TrimPiece after = divide_at(rest, (last - at) / (1 - at));
+      append_one(rest, inside.subspan(begin, end - 1 - begin));
+      most = std::max(most, most_);
+      parts_.push_back(std::move(after));
+    } else if (ends) {
+      append_one(rest, inside.subspan(begin));
+      most = std::max(most, most_);
+    } else {
+      parts_.push_back(std::move(rest));
+    }
+  }
+  end_parts();
+  return most;
+}
+
+void PieceChords::begin_chords(const ChordLimits& limits, std::vector<ParameterPoint>& points,
+                               std::vector<double>& parameters) {
   limits_ = &limits;
   points_ = &points;
+  parameters_ = &parameters;
   most_ = 0;
+}
+
+double PieceChords::append(std::span<const TrimPiece> chain, const ChordLimits& limits,
+                           std::vector<ParameterPoint>& points, std::vector<double>& parameters) {
+  begin_chords(limits, points, parameters);
   while (!chain.empty()) {
     const std::size_t count = reach(chain);
     if (count == 1) {
-      append_one(chain.front());
+      append_one(chain.front(), {});
     } else {
       most_ = std::max(most_, sliver_over(chain.first(count)).size);
       points.push_back(chain[count - 1].end());
+      parameters.push_back(chain[count - 1].range.to);
     }
     chain = chain.subspan(count);
   }
@@ -61,23 +165,45 @@ double PieceChords::error_of(const TrimPiece& piece) const {
   return piece.error.u * limits_->speed.u + piece.error.v * limits_->speed.v;
 }
 
-void PieceChords::append_one(const TrimPiece& piece) {
+void PieceChords::append_one(const TrimPiece& piece, std::span<const double> stops) {
   piece_ = &piece;
   degree_ = piece.curve.degree();
   error_ = error_of(piece);
   most_ = std::max(most_, error_);
-  Net net;
+  Net net, before;
   for (std::size_t k = 0; k <= static_cast<std::size_t>(degree_); ++k) {
     const double weight = piece.curve.weight(k);
     const ParameterPoint& point = piece.curve.points[k];
     net[k] = {weight * (point.u - piece.start().u), weight * (point.v - piece.start().v), weight};
   }
-  divide(net, 0);
+  double from = 0;
+  for (const double stop : stops) {
+    const double at = (stop - piece.range.from) / (piece.range.to - piece.range.from);
+    split(net, (at - from) / (1 - from), before, net);
+    divide(before, from, at, 0);
+    from = at;
+  }
+  divide(net, from, 1, 0);
   points_->back() = piece.end();
 }
 
+// De Casteljau's algorithm; `high` may be the net itself.
+void PieceChords::split(const Net& net, double x, Net& low, Net& high) const {
+  const std::size_t last = static_cast<std::size_t>(degree_);
+  const double y = 1 - x;
+  high = net;
+  low[0] = net[0];
+  for (std::size_t level = 1; level <= last; ++level) {
+    for (std::size_t k = 0; k + level <= last; ++k) {
+      const Control &p = high[k], &q = high[k + 1];
+      high[k] = {y * p.u + x * q.u, y * p.v + x * q.v, y * p.w + x * q.w};
+    }
+    low[level] = high[0];
+  }
+}
+
 // Points are kept within the box of the piece, which rounding could leave, so they never pass a line between patches.
-void PieceChords::divide(const Net& net, int depth) {
+void PieceChords::divide(const Net& net, double from, double to, int depth) {
   const std::size_t last = static_cast<std::size_t>(degree_);
   const ParameterPoint a = net[0].point(), b = net[last].point();
   const ParameterPoint chord{b.u - a.u, b.v - a.v};
@@ -93,18 +219,14 @@ void PieceChords::divide(const Net& net, int depth) {
     const ParameterPoint at{std::clamp(piece.start().u + b.u, piece.lower_u(), piece.upper_u()),
                             std::clamp(piece.start().v + b.v, piece.lower_v(), piece.upper_v())};
     points_->push_back(at);
+    parameters_->push_back(piece.range.from + to * (piece.range.to - piece.range.from));
     return;
   }
-  Net low = net, high = net;
-  for (std::size_t level = 1; level <= last; ++level) {  // de Casteljau at 1/2
-    for (std::size_t k = 0; k + level <= last; ++k) {
-      const Control &p = high[k], &q = high[k + 1];
-      high[k] = {(p.u + q.u) / 2, (p.v + q.v) / 2, (p.w + q.w) / 2};
-    }
-    low[level] = high[0];
-  }
-  divide(low, depth + 1);
-  divide(high, depth + 1);
+  Net low, high;
+  split(net, 0.5, low, high);
+  const double middle = (from + to) / 2;
+  divide(low, from, middle, depth + 1);
+  divide(high, middle, to, depth + 1);
 }
 
 }  // namespace tessera::inline abi_0_1

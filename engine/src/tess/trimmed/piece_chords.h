@@ -22,6 +22,12 @@ struct ChordLimits {
   double bend = std::numeric_limits<double>::infinity();
 };
 
+/// Parameters of a caller's curve where chords must end.
+struct ChordStops {
+  std::span<const double> at;  ///< growing
+  double same = 0;             ///< nearer to an end of a piece, a stop is that end
+};
+
 /// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over parts of one piece by
 /// halving it.
 ///
@@ -32,10 +38,14 @@ struct ChordLimits {
 /// smaller of both counts.
 class PieceChords {
  public:
-  /// Appends the points of a chain but its start. `chain`: pieces that follow each other, together monotone in u and in
-  /// v. Returns the largest sliver bound, which is at most limits.sliver, unless a piece would need more than 2^20
+  /// Appends the points of a chain but its start, and the parameters of the caller's curve there. `chain`: pieces that
+  /// follow each other, together monotone in u and in v. Returns the largest sliver bound, which is at most limits.sliver, unless a piece would need more than 2^20
   /// chords. The errors of the pieces count as a part of the sliver.
-  double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points);
+  double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points,
+                std::vector<double>& parameters);
+  /// Does the same with chords that also end at stops. All pieces are of one curve.
+  double append(std::span<const TrimPiece> chain, const ChordStops& stops, const ChordLimits& limits,
+                std::vector<ParameterPoint>& points, std::vector<double>& parameters);
 
  private:
   struct Control {
@@ -54,12 +64,18 @@ class PieceChords {
   /// The number of pieces that the next chord spans.
   std::size_t reach(std::span<const TrimPiece> chain) const;
   double error_of(const TrimPiece& piece) const;
-  void append_one(const TrimPiece& piece);
-  void divide(const Net& net, int depth);
+  void begin_chords(const ChordLimits& limits, std::vector<ParameterPoint>& points, std::vector<double>& parameters);
+  /// Appends the points of one piece but its start; chords end at the stops, which lie inside.
+  void append_one(const TrimPiece& piece, std::span<const double> stops);
+  void split(const Net& net, double x, Net& low, Net& high) const;
+  /// `from`, `to`: of the piece, the part that the net is.
+  void divide(const Net& net, double from, double to, int depth);
 
   const TrimPiece* piece_ = nullptr;
   const ChordLimits* limits_ = nullptr;
   std::vector<ParameterPoint>* points_ = nullptr;
+  std::vector<double>* parameters_ = nullptr;
+  std::vector<TrimPiece> parts_;  ///< from one stop to the next
   int degree_ = 0;
   double most_ = 0, error_ = 0;
 };

@@ -45,6 +45,8 @@ class PolygonTriangles {
 
   /// The triangles of the last run, by indices of its points.
   std::span<const Triangle> triangles() { return funnels_.triangles(); }
+  /// The point that stands for an equal one.
+  std::uint32_t first_equal(std::uint32_t point) const { return points_.index_of(points_.rank_of(point)); }
 
  private:
   enum Kind : std::uint8_t { border = 1, cut = 2 };  // bits: a cut may lie on a border

@@ -11,27 +11,36 @@ void divide(std::vector<double>& lines, double from, double to, Segments along) 
 }
 
 /// The length of a grid's cell: of the shortest one.
-double shortest(const std::vector<double>& lines) {
-  double least = lines.back() - lines.front();
-  for (std::size_t k = 1; k < lines.size(); ++k) least = std::min(least, lines[k] - lines[k - 1]);
+double shortest(double from, double to, Segments along) {
+  double least = to - from, before = from;
+  for (int k = 1; k <= along.rate(); ++k) {
+    const double line = line_at(from, to, along, k);
+    least = std::min(least, line - before);
+    before = line;
+  }
   return least;
 }
 
 }  // namespace
 
+ChordLimits chord_limits(const TrimmedPatch& patch) {
+  const Domain& d = patch.domain;
+  return {patch.sliver,
+          {patch.chord_share * shortest(d.u0, d.u1, patch.segments.u),
+           patch.chord_share * shortest(d.v0, d.v1, patch.segments.v)},
+          {patch.speed.u / (d.u1 - d.u0), patch.speed.v / (d.v1 - d.v0)},
+          patch.bend};
+}
+
 void PatchCutter::begin(const TrimmedPatch& patch) {
   patch_ = patch;
   points_.clear();
-  chords_.clear();
+  chords_.clear(), loop_chords_.clear(), marks_.clear();
   sliver_ = 0;
   divide(lines_u_, patch.domain.u0, patch.domain.u1, patch.segments.u);
   divide(lines_v_, patch.domain.v0, patch.domain.v1, patch.segments.v);
   grid_ = {lines_u_, lines_v_};
-  const double width = patch.domain.u1 - patch.domain.u0, height = patch.domain.v1 - patch.domain.v0;
-  limits_ = {patch.sliver,
-             {patch.chord_share * shortest(lines_u_), patch.chord_share * shortest(lines_v_)},
-             {patch.speed.u / width, patch.speed.v / height},
-             patch.bend};
+  limits_ = chord_limits(patch);
 }
 
 std::uint32_t PatchCutter::add_point(const ParameterPoint& point) {
@@ -53,6 +62,7 @@ std::size_t PatchCutter::add_side(std::span<const SidePoint> side, double across
     if (last == no_place) last = add_point(at(side[k].at));
     const std::uint32_t next = add_point(at(side[k + 1].at));
     chords_.push_back({last, next});
+    marks_.push_back(no_place);
     last = next;
   }
   return chords_.size() - before;
@@ -63,6 +73,7 @@ bool PatchCutter::continues(const ParameterPoint& start, const TrimPiece& before
   const ParameterPoint &at = next.start(), &to = next.end();
   const auto is_monotone = [](double x, double y, double z) { return (x <= y && y <= z) || (x >= y && y >= z); };
   const Domain& d = patch_.domain;
+  if (patch_.stops && (before.loop != next.loop || before.curve_index != next.curve_index)) return false;
   return patch_.chord_share == 1 && before.end() == at && is_monotone(start.u, at.u, to.u) &&
          is_monotone(start.v, at.v, to.v) && at.u != d.u0 && at.u != d.u1 && at.v != d.v0 && at.v != d.v1;
 }
@@ -77,13 +88,31 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
       ++count;
     k += count;
     std::uint32_t last = add_point(pieces[first].start());
-    sliver_ = std::max(sliver_, chords_of_pieces_.append(pieces.subspan(first, count), limits_, points_));
-    for (; last + 1 < points_.size(); ++last) chords_.push_back({last, last + 1});
+    parameters_.assign(1, pieces[first].range.from);
+    const std::span<const TrimPiece> chain = pieces.subspan(first, count);
+    const double sliver =
+        patch_.stops ? chords_of_pieces_.append(chain, (*patch_.stops)(chain.front()), limits_, points_, parameters_)
+                     : chords_of_pieces_.append(chain, limits_, points_, parameters_);
+    sliver_ = std::max(sliver_, sliver);
+    for (std::size_t n = 0; last + 1 < points_.size(); ++last, ++n) {
+      chords_.push_back({last, last + 1});
+      marks_.push_back(static_cast<std::uint32_t>(loop_chords_.size()));
+      loop_chords_.push_back({static_cast<std::uint32_t>(first), last, last + 1, parameters_[n], parameters_[n + 1],
+                              pieces[first].curve_index != TrimPiece::none});
+    }
   }
   return chords_.size() - before;
 }
 
-bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_) && cut(); }
+bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_, marks_) && cut(); }
+
+double PatchCutter::parameter(const LoopChord& chord, std::uint32_t point) const {
+  const ParameterPoint &a = points_[chord.start], &b = points_[chord.end], &at = points_[point];
+  if (point == chord.start || at == a) return chord.from;
+  if (point == chord.end || at == b) return chord.to;
+  const ParameterPoint all = distance(a, b), part = distance(a, at);
+  return chord.from + (chord.to - chord.from) * (all.u > all.v ? part.u / all.u : part.v / all.v);
+}
 
 bool PatchCutter::cut() { return cells_.run(grid_, points_, chords_); }
 

@@ -1,10 +1,13 @@
 #pragma once
 // One patch of a trimmed face: its polygon, its triangles and their bound.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "base/function_ref.h"
 #include "tess/trimmed/chord_crossings.h"
 #include "tess/trimmed/cut_cells.h"
 #include "tess/trimmed/patch_sides.h"
@@ -26,7 +29,23 @@ struct TrimmedPatch {
   bool in_cells;           ///< whether triangles must be no wider than cells
   double bend;             ///< see ChordLimits
   VertexRounding rounding;
+  std::array<bool, 4> is_shared{};  ///< by Side: whether another patch has the same border, as across a seam
+  /// If set, loops name edges of a shape: chords end where curves do, and at the stops of each piece's curve, which are
+  /// valid until the next call.
+  std::optional<FunctionRef<ChordStops(const TrimPiece&)>> stops = {};
   double chord_share = 1;  ///< the largest length of a chord, in cells
+};
+
+/// The limits of chords in a patch.
+ChordLimits chord_limits(const TrimmedPatch& patch);
+
+/// A chord of a piece of a loop, between two points of the polygon. A part of a chord that crosses others has the
+/// parameters of its nearest ends along the curve.
+struct LoopChord {
+  std::uint32_t piece = 0;  ///< the first that it spans
+  std::uint32_t start = 0, end = 0;
+  double from = 0, to = 0;  ///< the parameters of the caller's curve
+  bool has_curve = true;    ///< else it closes a gap between two curves
 };
 
 /// Cuts patches, one after the other.
@@ -45,6 +64,18 @@ class PatchCutter {
   bool cut_crossing();
 
   CutCells& cells() { return cells_; }
+  /// Calls visit(LoopChord) for the chords of pieces, in their order. Points that are equal count as the first of them.
+  template <class Visit>
+  void for_loop_chords(Visit visit) const {
+    for (std::size_t k = 0; k < chords_.size(); ++k) {
+      if (marks_[k] == no_place) continue;
+      const auto [start, end] = chords_[k];
+      if (points_[start] == points_[end]) continue;
+      const LoopChord& whole = loop_chords_[marks_[k]];
+      visit(LoopChord{whole.piece, cells_.first_equal(start), cells_.first_equal(end), parameter(whole, start),
+                      parameter(whole, end), whole.has_curve});
+    }
+  }
   /// The parameters of a vertex, in the surface and in the patch.
   ParameterPoint point(std::uint32_t vertex) const;
   ParameterPoint local(std::uint32_t vertex) const;
@@ -55,6 +86,8 @@ class PatchCutter {
   double sliver_bound() const { return sliver_; }
 
  private:
+  /// The parameter of a point on a chord.
+  double parameter(const LoopChord& chord, std::uint32_t point) const;
   std::uint32_t add_point(const ParameterPoint& point);
   /// Whether a piece continues a chain of pieces from `start` to the end of `before` so that it stays monotone.
   bool continues(const ParameterPoint& start, const TrimPiece& before, const TrimPiece& next) const;
@@ -66,6 +99,9 @@ class PatchCutter {
   CutCells cells_;
   std::vector<ParameterPoint> points_;
   std::vector<PlaneSegment> chords_;
+  std::vector<LoopChord> loop_chords_;
+  std::vector<std::uint32_t> marks_;  ///< by chord: its place in loop_chords_, or no_place on a side
+  std::vector<double> parameters_;    ///< of the points of one chain
   std::vector<double> lines_u_, lines_v_;
   GridLines grid_;
   double sliver_ = 0;

@@ -1,0 +1,272 @@
+#include "tess/closing/closed_edges.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <tuple>
+
+#include "tess/bounds/rounded_up.h"
+#include "tess/closing/edge_points.h"
+#include "tess/edges/union_find.h"
+#include "tess/trimmed/patch_points.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+Vec3 middle_of(const Box3& box) { return 0.5 * box.lower + 0.5 * box.upper; }
+
+class Closer {
+ public:
+  Closer(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions, std::span<CutPatch> cuts,
+         FunctionRef<ChordBound(std::uint32_t)> chord)
+      : set_(set),
+        chord_(chord),
+        divisions_(divisions),
+        cuts_(cuts),
+        segments_(set, runs, divisions, cuts),
+        runs_(runs) {}
+
+  ClosedEdges run(double max_gap, std::span<const std::uint8_t> is_joined) {
+    points_ = edge_points(runs_, segments_, is_joined);
+    number_vertices();
+    evaluate();
+    find_open(max_gap);
+    join();
+    resolve_inserted();
+    list_members();
+    measure();
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr std::uint32_t none = CutPatch::none;
+
+  CutPatch* cut_of(std::uint32_t patch) const {
+    const auto cut = std::ranges::lower_bound(cuts_, patch, {}, &CutPatch::patch);
+    return cut != cuts_.end() && cut->patch == patch ? &*cut : nullptr;
+  }
+
+  /// Gives numbers to all vertices that may lie on edges: those of rings and of cut patches, then inserted ones.
+  void number_vertices() {
+    bases_.assign(set_.patches.size() + 1, 0);
+    for (const PatchEdges::Face& face : set_.edges->faces)
+      for (const std::uint32_t patch : face.patches)
+        if (patch != no_id) bases_[patch + 1] = boundary_count(patch);
+    for (std::size_t k = 1; k < bases_.size(); ++k) bases_[k] += bases_[k - 1];
+    count_ = bases_.back() + static_cast<std::uint32_t>(segments_.inserted().size());
+    is_used_.assign(count_, 0);
+    of_points_.reserve(points_.vertices.size());
+    for (const PatchVertex& vertex : points_.vertices) of_points_.push_back(number(vertex));
+    for (const auto& [a, b] : segments_.same()) same_.push_back({number(a), number(b)});
+  }
+  std::uint32_t boundary_count(std::uint32_t patch) const {
+    if (const CutPatch* const cut = cut_of(patch)) return static_cast<std::uint32_t>(cut->vertices.size());
+    return divisions_[patch].empty ? 0 : static_cast<std::uint32_t>(divisions_[patch].ring_count());
+  }
+  std::uint32_t number(const PatchVertex& vertex) {
+    const bool is_whole = !divisions_[vertex.patch].empty;
+    const std::uint32_t number =
+        vertex.vertex & PatchVertex::inserted
+            ? bases_.back() + (vertex.vertex ^ PatchVertex::inserted)
+            : bases_[vertex.patch] + vertex.vertex -
+                  (is_whole ? static_cast<std::uint32_t>(divisions_[vertex.patch].inner_count()) : 0);
+    is_used_[number] = 1;
+    return number;
+  }
+
+  /// Finds the faces' own points of all vertices.
+  void evaluate() {
+    own_.resize(count_);
+    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) evaluate(patch);
+    const std::span<const InsertedVertex> inserted = segments_.inserted();
+    std::optional<PatchPoints> points;
+    for (std::size_t k = 0; k < inserted.size(); ++k) {
+      if (k == 0 || inserted[k].patch != inserted[k - 1].patch)
+        points.emplace(set_.patches[inserted[k].patch], set_.origin);
+      own_[bases_.back() + k] = points->at(inserted[k].local);
+    }
+  }
+  void evaluate(std::uint32_t patch) {
+    const std::uint32_t begin = bases_[patch], end = bases_[patch + 1];
+    if (std::find(is_used_.begin() + begin, is_used_.begin() + end, 1) == is_used_.begin() + end) return;
+    PatchPoints points(set_.patches[patch], set_.origin);
+    const CutPatch* const cut = cut_of(patch);
+    for (std::uint32_t k = begin; k < end; ++k) {
+      if (!is_used_[k]) continue;
+      if (cut) {
+        own_[k] = points.at(cut->vertices[k - begin]);
+      } else {
+        const Division::Parameters at = divisions_[patch].parameters(divisions_[patch].inner_count() + k - begin);
+        own_[k] = points.at({at.u, at.v});
+      }
+    }
+  }
+
+  /// Finds the edges along which faces are farther apart than `max_gap`.
+  void find_open(double max_gap) {
+    is_open_.assign(set_.edges->edges.size(), 0);
+    for (const EdgePoint& point : points_.points) {
+      Box3 box;
+      for (std::uint32_t k = 0; k < point.count; ++k) box.extend(own_[of_points_[point.first + k]]);
+      if (box.diagonal() > max_gap) is_open_[point.edge] = 1;
+    }
+  }
+
+  void join() {
+    sets_.emplace(count_ + set_.edges->vertex_count);
+    for (const auto& [a, b] : same_) sets_->unite(a, b);
+    for (const EdgePoint& point : points_.points) {
+      if (is_open_[point.edge]) continue;
+      const std::uint32_t* const of = &of_points_[point.first];
+      for (std::uint32_t k = 1; k < point.count; ++k) sets_->unite(of[0], of[k]);
+      if (point.vertex != no_id) sets_->unite(of[0], count_ + point.vertex);
+    }
+  }
+
+  /// Gives inserted vertices of edges that are closed their numbers in their patches, and divides triangles.
+  void resolve_inserted() {
+    std::vector<InsertedVertex> inserted(segments_.inserted().begin(), segments_.inserted().end());
+    std::vector<std::uint32_t> order;
+    std::vector<std::uint8_t> is_used(inserted.size(), 0);
+    for (const EdgePoint& point : points_.points)
+      for (std::uint32_t k = 0; k < point.count && !is_open_[point.edge]; ++k)
+        if (const std::uint32_t v = points_.vertices[point.first + k].vertex; v & PatchVertex::inserted)
+          is_used[v ^ PatchVertex::inserted] = 1;
+    for (std::uint32_t k = 0; k < inserted.size(); ++k)
+      if (is_used[k]) order.push_back(k);
+    std::ranges::sort(order, {}, [&](std::uint32_t k) {
+      const InsertedVertex& v = inserted[k];
+      return std::tuple(v.patch, v.start, v.end, v.at, k);
+    });
+    resolved_.assign(inserted.size(), CutPatch::none);
+    std::vector<InsertedVertex> of_patch;
+    for (std::size_t begin = 0; begin < order.size();) {
+      const std::uint32_t patch = inserted[order[begin]].patch;
+      of_patch.clear();
+      std::size_t end = begin;
+      for (; end < order.size() && inserted[order[end]].patch == patch; ++end) of_patch.push_back(inserted[order[end]]);
+      const std::uint32_t first = edit(patch, of_patch);
+      for (std::size_t k = begin; k < end; ++k) resolved_[order[k]] = first + static_cast<std::uint32_t>(k - begin);
+      begin = end;
+    }
+  }
+
+  /// Divides the triangles of a patch. Returns the number of the first new vertex.
+  std::uint32_t edit(std::uint32_t patch, std::span<const InsertedVertex> inserted) {
+    if (CutPatch* const cut = cut_of(patch)) {
+      const auto first = static_cast<std::uint32_t>(cut->vertices.size());
+      for (const InsertedVertex& vertex : inserted) cut->vertices.push_back(vertex.local);
+      const std::size_t count = cut->triangles.size();
+      const ChordBound chord = chord_(patch);
+      for (const std::uint32_t k : insert_vertices(inserted, first, cut->triangles))
+        cut->measure(cut->triangles[k], chord);
+      for (std::size_t k = count; k < cut->triangles.size(); ++k) cut->measure(cut->triangles[k], chord);
+      out_.edited_cuts.push_back(static_cast<std::uint32_t>(cut - cuts_.data()));
+      return first;
+    }
+    const Division& division = divisions_[patch];
+    const auto first = static_cast<std::uint32_t>(division.vertex_count());
+    const std::size_t count = division.triangle_count() - 2 * division.cell_count();  // cells are not on borders
+    std::vector<CutPatch::Triangle> triangles(count);
+    division.write_triangles(0, triangles.data()->data(), false);
+    PatchEdit& edit = out_.edits.emplace_back();
+    edit.patch = patch;
+    for (const InsertedVertex& vertex : inserted) edit.vertices.push_back(vertex.local);
+    for (const std::uint32_t k : insert_vertices(inserted, first, triangles))
+      edit.changed.emplace_back(k, triangles[k]);
+    edit.added.assign(triangles.begin() + static_cast<std::ptrdiff_t>(count), triangles.end());
+    return first;
+  }
+
+  void list_members() {
+    // Vertices where no faces meet stay: they may be welded.
+    std::vector<std::uint32_t> places(count_ + set_.edges->vertex_count, none);
+    std::vector<std::uint8_t> meets(places.size(), 0);
+    for (const EdgePoint& point : points_.points)
+      if (runs_.meet(point.edge) && !is_open_[point.edge]) meets[sets_->find(of_points_[point.first]).member] = 1;
+    places_.assign(count_, none);
+    out_.members.reserve(static_cast<std::size_t>(std::ranges::count(is_used_, 1)));
+    const auto add = [&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
+      const std::uint32_t root = sets_->find(k).member;
+      if (!meets[root]) return;
+      if (places[root] == none) places[root] = out_.place_count++;
+      places_[k] = places[root];
+      out_.members.push_back({patch, vertex, places_[k]});
+    };
+    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) {
+      const bool is_whole = !divisions_[patch].empty;
+      const std::size_t inner = is_whole ? divisions_[patch].inner_count() : 0;
+      for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k)
+        if (is_used_[k]) add(k, patch, static_cast<std::uint32_t>(inner) + k - bases_[patch]);
+    }
+    const std::span<const InsertedVertex> inserted = segments_.inserted();
+    for (std::uint32_t k = 0; k < inserted.size(); ++k)
+      if (resolved_[k] != none) add(bases_.back() + k, inserted[k].patch, resolved_[k]);
+  }
+
+  void measure() {
+    std::vector<Box3> boxes(out_.place_count);
+    for (std::uint32_t k = 0; k < count_; ++k)
+      if (places_[k] != none) boxes[places_[k]].extend(own_[k]);
+    out_.gaps.assign(set_.edges->edges.size(), 0);
+    for (const EdgePoint& point : points_.points) {
+      if (is_open_[point.edge]) continue;
+      for (std::uint32_t k = 0; k < point.count; ++k) {
+        const std::uint32_t vertex = of_points_[point.first + k];
+        if (places_[vertex] == none) continue;
+        const double gap = length(own_[vertex] - middle_of(boxes[places_[vertex]]));
+        out_.gap = std::max(out_.gap, gap);
+        out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
+      }
+    }
+    for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
+      if (!is_open_[edge]) out_.closed_segments += points_.closed[edge];
+    for (const CutPatch& cut : cuts_)
+      for (const CutPatch::LoopSegment& line : cut.loop_segments) out_.closed_segments += is_closed_gap(cut, line);
+  }
+
+  /// Whether a line that closes a gap between two curves has become a point.
+  bool is_closed_gap(const CutPatch& cut, const CutPatch::LoopSegment& line) const {
+    if (line.has_curve || line.start == line.end) return false;
+    const std::uint32_t first = places_[bases_[cut.patch] + line.start], last = places_[bases_[cut.patch] + line.end];
+    return first == last && first != none;
+  }
+
+  const PatchSet::Impl& set_;
+  FunctionRef<ChordBound(std::uint32_t)> chord_;
+  std::span<const Division> divisions_;
+  std::span<CutPatch> cuts_;
+  EdgeSegments segments_;
+  const EdgeRuns& runs_;
+  EdgePoints points_;
+  std::vector<std::uint32_t> bases_;  ///< by patch: the number of its first vertex; then that of the first inserted one
+  std::uint32_t count_ = 0;
+  std::vector<std::uint8_t> is_used_;
+  std::vector<std::uint32_t> of_points_;
+  std::vector<std::array<std::uint32_t, 2>> same_;
+  std::vector<Vec3> own_;
+  std::vector<std::uint8_t> is_open_;
+  std::optional<UnionFind> sets_;
+  std::vector<std::uint32_t> resolved_, places_;
+  ClosedEdges out_;
+};
+
+}  // namespace
+
+std::vector<Vec3> middles(std::span<const ClosedEdges::Member> members, std::span<const Vec3> own,
+                          std::uint32_t place_count) {
+  std::vector<Box3> boxes(place_count);
+  for (std::size_t k = 0; k < members.size(); ++k) boxes[members[k].place].extend(own[k]);
+  std::vector<Vec3> at;
+  at.reserve(place_count);
+  for (const Box3& box : boxes) at.push_back(middle_of(box));
+  return at;
+}
+
+ClosedEdges close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
+                        std::span<CutPatch> cuts, double max_gap, std::span<const std::uint8_t> is_joined,
+                        FunctionRef<ChordBound(std::uint32_t)> chord) {
+  return Closer(set, runs, divisions, cuts, chord).run(max_gap, is_joined);
+}
+
+}  // namespace tessera::inline abi_0_1

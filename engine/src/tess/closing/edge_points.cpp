@@ -1,0 +1,111 @@
+#include "tess/closing/edge_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "tess/closing/edge_stops.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// The points of one edge after the other.
+class Maker {
+ public:
+  Maker(const EdgeRuns& runs, EdgeSegments& segments, std::span<const std::uint8_t> is_joined)
+      : runs_(runs), all_(segments), is_joined_(is_joined) {}
+
+  EdgePoints run() {
+    const std::size_t edges = runs_.edges().edges.size();
+    out_.closed.assign(edges, 0);
+    for (std::uint32_t edge = 0; edge < edges; ++edge) {
+      segments_.clear();
+      all_.append(edge, segments_);
+      if (!segments_.empty()) add_edge(edge);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  struct Stop {
+    double s;
+    PatchVertex vertex;
+    friend bool operator==(const Stop&, const Stop&) = default;
+  };
+
+  void add_edge(std::uint32_t id) {
+    const PatchEdges::Edge& edge = runs_.edges().edges[id];
+    const double same = EdgeStops::same_share * (edge.range.to - edge.range.from);
+    stops_.clear();
+    for (const EdgeSegment& segment : segments_) {
+      const Stop low{segment.from, segment.low};
+      if (stops_.empty() || !(stops_.back() == low)) stops_.push_back(low);
+      stops_.push_back({segment.to, segment.high});
+    }
+    sort_stops();
+    places_.clear();
+    for (const Stop& stop : stops_) {
+      if (places_.empty() || stop.s - places_.back().to > same) places_.push_back({stop.s, stop.s});
+      places_.back().to = stop.s;
+    }
+    if (segments_.front().run->use != segments_.back().run->use) {
+      insert_missing();
+      for (const EdgeSegment& segment : segments_) out_.closed[id] += is_closed_here(segment);
+    }
+    put(id, edge, same);
+  }
+
+  bool is_closed_here(const EdgeSegment& segment) const {
+    const EdgeRun& run = *segment.run;
+    return segment.start != segment.end &&
+           !(run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]);
+  }
+
+  void sort_stops() {
+    std::ranges::sort(stops_, [](const Stop& a, const Stop& b) {
+      return std::tuple(a.s, a.vertex.patch, a.vertex.vertex) < std::tuple(b.s, b.vertex.patch, b.vertex.vertex);
+    });
+  }
+
+  /// Inserts vertices at the places that lie strictly inside a segment.
+  void insert_missing() {
+    const std::size_t before = stops_.size();
+    for (const EdgeSegment& segment : segments_) {
+      const bool is_point = segment.start == segment.end;
+      auto at = std::ranges::upper_bound(places_, segment.from, {}, &Interval::from);
+      for (; at != places_.end() && at->to < segment.to; ++at)
+        stops_.push_back({at->from, is_point ? segment.low : all_.insert(segment, at->from)});
+    }
+    if (stops_.size() > before) sort_stops();
+  }
+
+  void put(std::uint32_t id, const PatchEdges::Edge& edge, double same) {
+    auto stop = stops_.begin();
+    for (const auto& [from, to] : places_) {
+      EdgePoint point{id, no_id, static_cast<std::uint32_t>(out_.vertices.size()), 0};
+      for (; stop != stops_.end() && stop->s <= to; ++stop) out_.vertices.push_back(stop->vertex);
+      point.count = static_cast<std::uint32_t>(out_.vertices.size()) - point.first;
+      if (edge.degenerate || std::abs(from - edge.range.from) <= same)
+        point.vertex = edge.start;
+      else if (std::abs(to - edge.range.to) <= same)
+        point.vertex = edge.end;
+      out_.points.push_back(point);
+    }
+  }
+
+  const EdgeRuns& runs_;
+  EdgeSegments& all_;
+  std::span<const std::uint8_t> is_joined_;
+  EdgePoints out_;
+  std::vector<EdgeSegment> segments_;
+  std::vector<Stop> stops_;
+  std::vector<Interval> places_;  ///< of parameters that count as one
+};
+
+}  // namespace
+
+EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, std::span<const std::uint8_t> is_joined) {
+  return Maker(runs, segments, is_joined).run();
+}
+
+}  // namespace tessera::inline abi_0_1

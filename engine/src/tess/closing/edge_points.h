@@ -1,0 +1,33 @@
+#pragma once
+// The points of edges: parameters at which all faces of an edge have vertices.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tess/closing/edge_segments.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// The vertices at one parameter of an edge.
+struct EdgePoint {
+  std::uint32_t edge = 0;
+  std::uint32_t vertex = no_id;        ///< where the edge ends: below PatchEdges::vertex_count
+  std::uint32_t first = 0, count = 0;  ///< of its vertices
+};
+
+/// The points of all edges.
+struct EdgePoints {
+  std::vector<EdgePoint> points;      ///< by edges and growing parameters
+  std::vector<PatchVertex> vertices;  ///< of one point after the other
+  /// By edge: how many segments another face has triangles on, and had none on without this. 0 for one coedge.
+  std::vector<std::uint32_t> closed;
+};
+
+/// Lists the points of all edges. Where an edge has several coedges, each gets vertices at the parameters of all:
+/// missing ones are inserted. Parameters within EdgeStops::same_share of the edge's range count as one.
+///
+/// `is_joined`: by 4 * patch + side, whether triangles of another patch have the same border anyway.
+EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, std::span<const std::uint8_t> is_joined);
+
+}  // namespace tessera::inline abi_0_1

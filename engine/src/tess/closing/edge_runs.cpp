@@ -1,0 +1,186 @@
+#include "tess/closing/edge_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/impl_access.h"
+#include "block/coedge_parameter.h"
+#include "tess/trimmed/cut_patch.h"
+#include "tess/trimmed/patch_sides.h"
+#include "trim/trim_region_impl.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// Returns where a piece has a value of u, or v, from 0 to 1. Found by false position (the Illinois variant), as the
+/// piece is monotone.
+double place_on(const TrimPiece& piece, bool along_u, double value) {
+  const double from = along_of(piece.start(), along_u), to = along_of(piece.end(), along_u);
+  if (piece.curve.degree() == 1 && piece.curve.weights.empty())
+    return std::clamp((value - from) / (to - from), 0.0, 1.0);
+  const auto off = [&](double x) { return along_of(relative_point(piece.curve, {value, value}, x), along_u); };
+  double a = 0, b = 1, at_a = from - value, at_b = to - value, x = 0;
+  if (at_a == 0 || at_b == 0) return at_a == 0 ? 0 : 1;
+  for (int step = 0; step < 60 && std::abs(b - a) > 0x1p-52; ++step) {
+    x = std::clamp(a - at_a * (b - a) / (at_b - at_a), std::min(a, b), std::max(a, b));
+    const double at_x = off(x);
+    if (at_x == 0) return x;
+    if ((at_x < 0) != (at_b < 0)) {
+      a = b, at_a = at_b;
+    } else {
+      at_a /= 2;
+    }
+    b = x, at_b = at_x;
+  }
+  return x;
+}
+
+/// A line between patches along which a piece runs, if it does.
+enum class Along : std::uint8_t { none, u, v };
+Along along_of(const TrimPiece& piece, const CutLines& lines) {
+  const ParameterPoint &start = piece.start(), &end = piece.end();
+  if (start.v == end.v && lines.v.is_line(start.v)) return Along::u;
+  return start.u == end.u && lines.u.is_line(start.u) ? Along::v : Along::none;
+}
+
+/// Whether a piece goes on within the patch, and along the side, of the piece before it.
+bool goes_on(const TrimPiece& before, const TrimPiece& next, Along along, const CutLines& lines) {
+  if (before.loop != next.loop || before.curve_index != next.curve_index || !(before.end() == next.start()))
+    return false;
+  if (along_of(next, lines) != along) return false;
+  const ParameterPoint& at = next.start();
+  if (along == Along::none) return !lines.u.is_line(at.u) && !lines.v.is_line(at.v);
+  const bool along_u = along == Along::u;
+  if ((along_u ? lines.u : lines.v).is_line(along_of(at, along_u))) return false;
+  return (along_of(before.start(), along_u) < along_of(at, along_u)) ==
+         (along_of(at, along_u) < along_of(next.end(), along_u));
+}
+
+}  // namespace
+
+std::size_t cell_of(std::span<const double> lines, double value) {
+  const auto above = std::ranges::upper_bound(lines, value);
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - lines.begin() - 1, 0, std::ssize(lines) - 2));
+}
+
+double parameter_at(std::span<const TrimPiece> pieces, bool along_u, double value) {
+  const bool grows = along_of(pieces.front().start(), along_u) < along_of(pieces.back().end(), along_u);
+  const auto piece = std::ranges::partition_point(pieces.first(pieces.size() - 1), [&](const TrimPiece& of) {
+    const double end = along_of(of.end(), along_u);
+    return grows ? end < value : end > value;
+  });
+  return piece->range.from + place_on(*piece, along_u, value) * (piece->range.to - piece->range.from);
+}
+
+ParameterPoint point_at(std::span<const TrimPiece> pieces, double t) {
+  const auto piece = std::ranges::partition_point(pieces.first(pieces.size() - 1),
+                                                  [&](const TrimPiece& of) { return of.range.to < t; });
+  const Interval& range = piece->range;
+  const double place = std::clamp((t - range.from) / (range.to - range.from), 0.0, 1.0);
+  const ParameterPoint offset = relative_point(piece->curve, piece->start(), place);
+  return {std::clamp(piece->start().u + offset.u, piece->lower_u(), piece->upper_u()),
+          std::clamp(piece->start().v + offset.v, piece->lower_v(), piece->upper_v())};
+}
+
+EdgeRuns::EdgeRuns(const PatchSet::Impl& set) : edges_(set.edges.get()) {
+  for (std::uint32_t face = 0; face < edges_->faces.size(); ++face) add_face(face);
+  sort();
+}
+
+std::span<const TrimPiece> EdgeRuns::pieces(const EdgeRun& run) const {
+  return std::span(impl_of(edges_->faces[run.face].region).pieces).subspan(run.first, run.end - run.first);
+}
+
+const Coedge* EdgeRuns::coedge(std::uint32_t face, const TrimPiece& piece) const {
+  if (piece.loop == TrimPiece::none || piece.curve_index == TrimPiece::none) return nullptr;
+  const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
+  return loop.coedges.empty() ? nullptr : &loop.coedges[piece.curve_index];
+}
+
+double EdgeRuns::to_edge(std::uint32_t face, const TrimPiece& piece, double t) const {
+  const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
+  return edge_parameter(loop.coedges[piece.curve_index], loop.curves[piece.curve_index], t);
+}
+
+double EdgeRuns::to_curve(std::uint32_t face, const TrimPiece& piece, double s) const {
+  const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
+  return curve_parameter(loop.coedges[piece.curve_index], loop.curves[piece.curve_index], s);
+}
+
+void EdgeRuns::add_face(std::uint32_t face) {
+  const PatchEdges::Face& of = edges_->faces[face];
+  const TrimRegion::Impl& region = impl_of(of.region);
+  const std::vector<TrimPiece>& pieces = region.pieces;
+  std::vector<std::uint32_t> first_uses;
+  for (const TrimLoop& loop : *of.loops) {
+    first_uses.push_back(next_use_);
+    next_use_ += static_cast<std::uint32_t>(loop.coedges.size());
+  }
+  for (std::uint32_t piece = 0; piece < pieces.size();) {
+    EdgeRun run;
+    run.first = piece++;
+    const TrimPiece& at = pieces[run.first];
+    const Coedge* const coedge = this->coedge(face, at);
+    if (!coedge) continue;
+    const Along along = along_of(at, region.lines);
+    while (piece < pieces.size() && goes_on(pieces[piece - 1], pieces[piece], along, region.lines)) ++piece;
+    run.end = piece;
+    run.face = face;
+    run.edge = of.first_edge + coedge->edge;
+    run.use = first_uses[at.loop] + at.curve_index;
+    if (along != Along::none) {
+      find_side(run, along == Along::u);
+    } else {
+      const std::size_t a = cell_of(region.lines.u.lines, (at.start().u + at.end().u) / 2);
+      run.patch = of.patches[a * region.count_v() + cell_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
+    }
+    if (run.patch != no_id) runs_.push_back(run);
+  }
+}
+
+// A piece along a line has the face on one side of it. If both patches there are in the set, loops cut at least one.
+void EdgeRuns::find_side(EdgeRun& run, bool along_u) const {
+  const PatchEdges::Face& face = edges_->faces[run.face];
+  const TrimRegion::Impl& region = impl_of(face.region);
+  const TrimPiece& at = region.pieces[run.first];
+  const std::vector<double>& across = along_u ? region.lines.v.lines : region.lines.u.lines;
+  const std::vector<double>& along = along_u ? region.lines.u.lines : region.lines.v.lines;
+  const double middle = (along_of(at.start(), along_u) + along_of(region.pieces[run.end - 1].end(), along_u)) / 2;
+  const double value = along_u ? at.start().v : at.start().u;
+  const auto line = static_cast<std::size_t>(std::ranges::lower_bound(across, value) - across.begin());
+  const std::size_t cell = cell_of(along, middle);
+  const auto patch_at = [&](std::size_t strip) {
+    if (strip + 1 >= across.size()) return no_id;
+    return face.patches[along_u ? cell * region.count_v() + strip : strip * region.count_v() + cell];
+  };
+  const std::uint32_t below = line > 0 ? patch_at(line - 1) : no_id, above = patch_at(line);
+  bool is_above = below == no_id;
+  if (below != no_id && above != no_id) {
+    const FaceSides sides(face.region);
+    for (const SidePoint& point : (along_u ? sides.v : sides.u).points(line, cell, Segments(1)))
+      if (point.at <= middle) is_above = point.above;
+  }
+  run.is_side = true;
+  run.patch = is_above ? above : below;
+  run.side = along_u ? (is_above ? Side::v0 : Side::v1) : (is_above ? Side::u0 : Side::u1);
+}
+
+std::vector<std::uint8_t> EdgeRuns::borders_that_meet(std::size_t patches) const {
+  std::vector<std::uint8_t> borders(4 * patches, 0);
+  for (const EdgeRun& run : runs_)
+    if (run.is_side && meet(run.edge)) borders[4 * run.patch + static_cast<std::size_t>(run.side)] = 1;
+  return borders;
+}
+
+void EdgeRuns::sort() {
+  first_.assign(edges_->edges.size() + 1, 0);
+  for (const EdgeRun& run : runs_) ++first_[run.edge + 1];
+  for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
+  std::vector<EdgeRun> sorted(runs_.size());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (const EdgeRun& run : runs_) sorted[next[run.edge]++] = run;
+  runs_ = std::move(sorted);
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,70 @@
+#pragma once
+// The runs of faces' loops along the edges of shapes, patch by patch.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "block/patch_edges.h"
+#include "block/patch_set_impl.h"
+#include "tess/cells/patch_side.h"
+#include "trim/trim_piece.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// Pieces of a loop that follow each other along one edge and within one patch: along one of its sides, or through its
+/// inside.
+struct EdgeRun {
+  std::uint32_t edge = 0;            ///< into PatchEdges::edges
+  std::uint32_t use = 0;             ///< a number of the coedge, in the order of faces, loops and curves
+  std::uint32_t face = 0;            ///< into PatchEdges::faces
+  std::uint32_t first = 0, end = 0;  ///< into the pieces of the face's region
+  std::uint32_t patch = 0;
+  bool is_side = false;
+  Side side{};  ///< if it runs along one
+};
+
+/// All runs of a set, edge by edge. They depend on the set's loops alone.
+class [[gnu::visibility("hidden")]] EdgeRuns {
+ public:
+  /// The set must have edges, and must outlive the runs.
+  explicit EdgeRuns(const PatchSet::Impl& set);
+
+  /// The runs of an edge: use by use, and along each in the direction of its curve.
+  std::span<const EdgeRun> of(std::size_t edge) const {
+    return std::span(runs_).subspan(first_[edge], first_[edge + 1] - first_[edge]);
+  }
+  /// Whether faces meet along an edge, or a face meets itself.
+  bool meet(std::size_t edge) const { return !of(edge).empty() && of(edge).front().use != of(edge).back().use; }
+  /// `[4 * patch + side]`: 1 for borders along such edges.
+  std::vector<std::uint8_t> borders_that_meet(std::size_t patches) const;
+  std::span<const TrimPiece> pieces(const EdgeRun& run) const;
+  /// The use of an edge that a piece has; null if it has none.
+  const Coedge* coedge(std::uint32_t face, const TrimPiece& piece) const;
+  /// The edge's parameter at one of the piece's curve, and the other way round. The piece must have a coedge.
+  double to_edge(std::uint32_t face, const TrimPiece& piece, double t) const;
+  double to_curve(std::uint32_t face, const TrimPiece& piece, double s) const;
+  const PatchEdges& edges() const { return *edges_; }
+
+ private:
+  void add_face(std::uint32_t face);
+  /// Finds the patch and the side of a run along a line between patches.
+  void find_side(EdgeRun & run, bool along_u) const;
+  void sort();
+
+  const PatchEdges* edges_;
+  std::vector<EdgeRun> runs_;
+  std::vector<std::uint32_t> first_;  ///< by edge
+  std::uint32_t next_use_ = 0;
+};
+
+/// The coordinate of a point along u, or along v.
+inline double along_of(const ParameterPoint& at, bool along_u) { return along_u ? at.u : at.v; }
+/// Returns the cell of growing lines in which a value lies.
+std::size_t cell_of(std::span<const double> lines, double value);
+/// Returns the parameter of the caller's curve where pieces that follow each other have a value of u, or of v.
+double parameter_at(std::span<const TrimPiece> pieces, bool along_u, double value);
+/// Returns the point of pieces that follow each other at a parameter of the caller's curve, within the piece's box.
+ParameterPoint point_at(std::span<const TrimPiece> pieces, double t);
+
+}  // namespace tessera::inline abi_0_1

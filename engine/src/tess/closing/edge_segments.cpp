@@ -1,0 +1,196 @@
+#include "tess/closing/edge_segments.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/impl_access.h"
+#include "tess/trimmed/patch_sides.h"
+#include "trim/trim_region_impl.h"
+
+namespace tessera::inline abi_0_1 {
+
+EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
+                           std::span<const CutPatch> cuts)
+    : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts) {}
+
+const CutPatch* EdgeSegments::cut_of(std::uint32_t patch) const {
+  const auto cut = std::ranges::lower_bound(cuts_, patch, {}, &CutPatch::patch);
+  return cut != cuts_.end() && cut->patch == patch ? &*cut : nullptr;
+}
+
+void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) {
+  const std::span<const EdgeRun> runs = runs_.of(edge);
+  for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
+    const std::size_t first = segments.size();
+    for (; end < runs.size() && runs[end].use == runs[begin].use; ++end) {
+      const std::span<const TrimPiece> pieces = runs_.pieces(runs[end]);
+      const PatchEdges::Face& face = runs_.edges().faces[runs[end].face];
+      join_corner(face, pieces.front().start());
+      join_corner(face, pieces.back().end());
+      runs[end].is_side ? append_side(runs[end], segments) : append_chords(runs[end], segments);
+    }
+    const std::span<EdgeSegment> of_use = std::span(segments).subspan(first);
+    std::ranges::sort(of_use, [](const EdgeSegment& a, const EdgeSegment& b) {
+      return a.from != b.from ? a.from < b.from : a.to < b.to;
+    });
+  }
+}
+
+void EdgeSegments::append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const {
+  const TrimPiece& piece = runs_.pieces(*segment.run).front();
+  segment.from = runs_.to_edge(segment.run->face, piece, from);
+  segment.to = runs_.to_edge(segment.run->face, piece, to);
+  if (segment.from > segment.to) std::swap(segment.from, segment.to), std::swap(segment.low, segment.high);
+  segments.push_back(segment);
+}
+
+void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
+  const CutPatch* const cut = cut_of(run.patch);
+  if (!cut) return;
+  auto chord = std::ranges::lower_bound(cut->loop_segments, run.first, {}, &CutPatch::LoopSegment::piece);
+  for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord)
+    append({.run = &run,
+            .low = {run.patch, chord->start},
+            .high = {run.patch, chord->end},
+            .start = chord->start,
+            .end = chord->end},
+           chord->from, chord->to, segments);
+}
+
+void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
+  list_side(run.patch, run.side);
+  if (side_.empty()) return;
+  const std::span<const TrimPiece> pieces = runs_.pieces(run);
+  const bool along_u = runs_along_u(run.side);
+  const bool is_point =
+      side_.size() == 1 || (!cut_of(run.patch) && divisions_[run.patch].collapsed.has(edge_of(run.side)));
+  if (is_point) {
+    const PatchVertex point{run.patch, side_.front().vertex};
+    for (const Place& place : side_) same_.push_back({point, PatchVertex{run.patch, place.vertex}});
+    append({.run = &run, .low = point, .high = point, .start = point.vertex, .end = point.vertex},
+           pieces.front().range.from, pieces.back().range.to, segments);
+    return;
+  }
+  const auto [from, to] =
+      std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
+  std::optional<double> before;  // the parameter where the last segment ends
+  for (std::size_t k = 0; k + 1 < side_.size(); ++k) {
+    const Place &a = side_[k], &b = side_[k + 1];
+    const double low = std::max(a.along, from), high = std::min(b.along, to);
+    if (!(low < high)) continue;
+    if (!before) before = parameter_at(pieces, along_u, low);
+    const double next = parameter_at(pieces, along_u, high);
+    append({.run = &run,
+            .low = vertex_at(run.patch, run.side, a, b, low),
+            .high = vertex_at(run.patch, run.side, a, b, high),
+            .start = a.vertex,
+            .end = b.vertex},
+           *before, next, segments);
+    before = next;
+  }
+}
+
+std::uint32_t EdgeSegments::ring_vertex(std::uint32_t patch, std::size_t side, int k) const {
+  const Division& division = divisions_[patch];
+  std::uint32_t start = 0;
+  for (std::size_t before = 0; before < side; ++before)
+    start += static_cast<std::uint32_t>(division.border[before].rate());
+  const std::uint32_t at = start + static_cast<std::uint32_t>(k);
+  return static_cast<std::uint32_t>(division.inner_count()) + (at == division.ring_count() ? 0 : at);
+}
+
+void EdgeSegments::list_side(std::uint32_t patch, Side side) {
+  side_.clear();
+  if (const CutPatch* const cut = cut_of(patch)) {
+    for (const CutPatch::SideVertex& vertex : cut->side_vertices)
+      if (vertex.side == side) side_.push_back({vertex.along, vertex.vertex});
+    return;
+  }
+  if (divisions_[patch].empty) return;
+  const Domain domain = set_.sources[patch].domain;
+  const bool along_u = runs_along_u(side);
+  const Segments segments = divisions_[patch].border[static_cast<std::size_t>(side)];
+  for (int k = 0; k <= segments.rate(); ++k)
+    side_.push_back({line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k),
+                     ring_vertex(patch, static_cast<std::size_t>(side), is_backward(side) ? segments.rate() - k : k)});
+}
+
+PatchVertex EdgeSegments::vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along) {
+  if (along == a.along) return {patch, a.vertex};
+  if (along == b.along) return {patch, b.vertex};
+  const std::uint64_t key =
+      std::bit_cast<std::uint64_t>(along) * 0x9E3779B97F4A7C15u + 4 * patch + static_cast<std::uint64_t>(side);
+  const auto [first, last] = on_sides_.equal_range(key);
+  for (auto known = first; known != last; ++known) {
+    const InsertedVertex& vertex = inserted_[known->second];
+    if (vertex.patch == patch && vertex.start == a.vertex && vertex.end == b.vertex && vertex.at == along)
+      return {patch, PatchVertex::inserted | known->second};
+  }
+  on_sides_.emplace(key, static_cast<std::uint32_t>(inserted_.size()));
+  return insert_on_side(patch, side, a.vertex, b.vertex, along);
+}
+
+PatchVertex EdgeSegments::insert_on_side(std::uint32_t patch, Side side, std::uint32_t start, std::uint32_t end,
+                                         double along) {
+  const Domain domain = set_.sources[patch].domain;
+  const double across = side == Side::u1 || side == Side::v1 ? 1 : 0;
+  const ParameterPoint local = runs_along_u(side) ? ParameterPoint{domain.local_u(along), across}
+                                                  : ParameterPoint{across, domain.local_v(along)};
+  inserted_.push_back({patch, start, end, along, local});
+  return {patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
+}
+
+PatchVertex EdgeSegments::insert(const EdgeSegment& segment, double s) {
+  const EdgeRun& run = *segment.run;
+  const std::span<const TrimPiece> pieces = runs_.pieces(run);
+  const double t = runs_.to_curve(run.face, pieces.front(), s);
+  const ParameterPoint at = point_at(pieces, t);
+  if (run.is_side)
+    return insert_on_side(run.patch, run.side, segment.start, segment.end, along_of(at, runs_along_u(run.side)));
+  const Domain domain = set_.sources[run.patch].domain;
+  inserted_.push_back({run.patch,
+                       segment.start,
+                       segment.end,
+                       t,
+                       {std::clamp(domain.local_u(at.u), 0.0, 1.0), std::clamp(domain.local_v(at.v), 0.0, 1.0)}});
+  return {run.patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
+}
+
+std::optional<std::uint32_t> EdgeSegments::corner_vertex(std::uint32_t patch, bool end_u, bool end_v) const {
+  if (const CutPatch* const cut = cut_of(patch)) {
+    const Domain domain = set_.sources[patch].domain;
+    for (const CutPatch::SideVertex& vertex : cut->side_vertices)
+      if (vertex.side == (end_v ? Side::v1 : Side::v0) && vertex.along == (end_u ? domain.u1 : domain.u0))
+        return vertex.vertex;
+    return {};
+  }
+  if (divisions_[patch].empty) return {};
+  return ring_vertex(patch, end_v ? (end_u ? 2 : 3) : (end_u ? 1 : 0), 0);
+}
+
+void EdgeSegments::join_corner(const PatchEdges::Face& face, const ParameterPoint& at) {
+  const TrimRegion::Impl& region = impl_of(face.region);
+  const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
+  const auto i = std::ranges::lower_bound(u, at.u) - u.begin(), j = std::ranges::lower_bound(v, at.v) - v.begin();
+  if (i == std::ssize(u) || u[static_cast<std::size_t>(i)] != at.u || j == std::ssize(v) ||
+      v[static_cast<std::size_t>(j)] != at.v)
+    return;
+  std::optional<PatchVertex> first;
+  for (const bool end_u : {true, false}) {
+    for (const bool end_v : {true, false}) {
+      const std::ptrdiff_t a = i - end_u, b = j - end_v;
+      if (a < 0 || b < 0 || a + 1 >= std::ssize(u) || b + 1 >= std::ssize(v)) continue;
+      const std::uint32_t patch =
+          face.patches[static_cast<std::size_t>(a) * region.count_v() + static_cast<std::size_t>(b)];
+      const std::optional<std::uint32_t> vertex = patch == no_id ? std::nullopt : corner_vertex(patch, end_u, end_v);
+      if (!vertex) continue;
+      if (first)
+        same_.push_back({*first, PatchVertex{patch, *vertex}});
+      else
+        first = PatchVertex{patch, *vertex};
+    }
+  }
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,86 @@
+#pragma once
+// The parts of a shape's edges that patches have on their boundaries: segments between vertices that follow each other.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "tess/cells/stitched_patch.h"
+#include "tess/closing/edge_runs.h"
+#include "tess/trimmed/cut_patch.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A vertex that a patch needs inside a segment of its boundary.
+struct InsertedVertex {
+  std::uint32_t patch = 0;
+  std::uint32_t start = 0, end = 0;  ///< the vertices of the segment as it was
+  double at = 0;                     ///< grows from start to end
+  ParameterPoint local;              ///< in the patch's own parameters
+};
+
+/// A vertex of a patch: one that it has, or one of a list that it gets.
+struct PatchVertex {
+  static constexpr std::uint32_t inserted = 0x80000000;  ///< a bit of `vertex`: the rest is an index into the list
+  std::uint32_t patch = 0, vertex = 0;
+  friend bool operator==(const PatchVertex&, const PatchVertex&) = default;
+};
+
+/// A part of a run, between vertices of a patch's boundary that follow each other. Its ends have growing parameters of
+/// the edge.
+struct EdgeSegment {
+  const EdgeRun* run = nullptr;
+  double from = 0, to = 0;           ///< the edge's parameter at its ends
+  PatchVertex low, high;             ///< at `from` and at `to`
+  std::uint32_t start = 0, end = 0;  ///< the boundary's own vertices; equal: a point, which gets no more vertices
+};
+
+/// The segments of all edges of a set, and the vertices that they need at the ends of edges.
+class [[gnu::visibility("hidden")]] EdgeSegments {
+ public:
+  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut. All must outlive this object.
+  EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
+               std::span<const CutPatch> cuts);
+
+  /// Appends the segments of an edge: use by use, by growing parameters of the edge.
+  void append(std::size_t edge, std::vector<EdgeSegment> & segments);
+  /// Vertices that are one, in pairs: corners of a face's patches, and the points of a side that is one point.
+  std::span<const std::array<PatchVertex, 2>> same() const { return same_; }
+  std::span<const InsertedVertex> inserted() const { return inserted_; }
+  /// Inserts a vertex into a segment, at a parameter of the edge between its ends. Returns the vertex.
+  PatchVertex insert(const EdgeSegment& segment, double s);
+  const CutPatch* cut_of(std::uint32_t patch) const;
+
+ private:
+  /// A vertex of a side.
+  struct Place {
+    double along;  ///< the surface's parameter
+    std::uint32_t vertex;
+  };
+  void append_chords(const EdgeRun& run, std::vector<EdgeSegment>& segments);
+  void append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments);
+  /// Completes a segment between two parameters of the loop's curve.
+  void append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const;
+  /// Lists the vertices of a side by growing places.
+  void list_side(std::uint32_t patch, Side side);
+  /// Returns the vertex at a place from a to b; it is inserted if there is none.
+  PatchVertex vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along);
+  PatchVertex insert_on_side(std::uint32_t patch, Side side, std::uint32_t start, std::uint32_t end, double along);
+  std::uint32_t ring_vertex(std::uint32_t patch, std::size_t side, int k) const;
+  std::optional<std::uint32_t> corner_vertex(std::uint32_t patch, bool end_u, bool end_v) const;
+  void join_corner(const PatchEdges::Face& face, const ParameterPoint& at);
+
+  const PatchSet::Impl& set_;
+  const EdgeRuns& runs_;
+  std::span<const Division> divisions_;
+  std::span<const CutPatch> cuts_;
+  std::vector<InsertedVertex> inserted_;
+  std::vector<std::array<PatchVertex, 2>> same_;
+  std::vector<Place> side_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> on_sides_;  ///< vertices inserted where runs end on sides
+};
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,76 @@
+// Closes the edges of shapes in a plan.
+
+#include <algorithm>
+#include <memory>
+
+#include "parallel/parallel_for.h"
+#include "tess/plan/certified_plan.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+constexpr std::size_t edges_per_task = 16;
+
+}  // namespace
+
+Status CertifiedPlanner::find_stops(const Request& request, const CertifiedPlan& plan, EdgeStops& stops,
+                                    const Execution& execution) const {
+  const auto segments = [&](std::uint32_t patch, Side side) {
+    return plan.divisions_[patch].border[static_cast<std::size_t>(side)];
+  };
+  const auto limits = [&](std::uint32_t patch) {
+    const auto cut = std::ranges::lower_bound(plan.cuts(), patch, {}, &CutPatch::patch);
+    return chord_limits(room_of(*cut, request, plan).limits);
+  };
+  const auto find = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, *runs_, edge, segments, limits);
+  };
+  return parallel_for(set_->edges->edges.size(), edges_per_task, {.cancel = execution.cancel}, find);
+}
+
+// Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then patches are
+// cut anew for less.
+Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
+  constexpr int max_attempts = 6;
+  Request cut = request;
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    if (set_->trims)
+      if (Status status = divide_and_cut(cut, plan, execution); !status.ok()) return status;
+    if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
+    ClosedEdges& closed = plan.rare_->closed.emplace(
+        tessera::close_edges(*set_, *runs_, plan.divisions_, plan.rare_->cuts, options_.max_gap, joined_borders(plan),
+                             [this](std::uint32_t patch) { return chord(patch); }));
+    double excess = 0;
+    for (const std::uint32_t c : closed.edited_cuts) {
+      const CutPatch& edited = plan.rare_->cuts[c];
+      excess = std::max(excess, bound_cut(room_of(edited, request, plan), edited, plan));
+    }
+    if (excess <= 1) {
+      plan.open_edges_ -= std::min(plan.open_edges_, closed.closed_segments);
+      return {};
+    }
+    cut.cut_share *= 0.95 / excess;
+  }
+  return too_rough(request, plan.rare_->cuts[plan.rare_->closed->edited_cuts.front()].patch);
+}
+
+std::vector<std::uint8_t> CertifiedPlanner::joined_borders(const CertifiedPlan& plan) const {
+  std::vector<std::uint8_t> borders(edges_.count(), 0), is_joined(4 * shapes_.size(), 0);
+  const auto full_borders = [&](auto visit) {
+    const auto visit_side = [&](std::size_t patch, Side side) {
+      if (const std::uint32_t edge = edges_.edge(patch, side); edge != SharedEdges::none)
+        visit(4 * patch + static_cast<std::size_t>(side), edge);
+    };
+    for (std::size_t patch = 0; patch < shapes_.size(); ++patch)
+      for (const Side side : all_sides)
+        if (!plan.divisions_[patch].empty) visit_side(patch, side);
+    for (const CutPatch& cut : plan.cuts())
+      for (const Side side : all_sides)
+        if (cut.is_full[static_cast<std::size_t>(side)]) visit_side(cut.patch, side);
+  };
+  full_borders([&](std::size_t, std::uint32_t edge) { borders[edge] += borders[edge] < 2; });
+  full_borders([&](std::size_t border, std::uint32_t edge) { is_joined[border] = borders[edge] == 2; });
+  return is_joined;
+}
+
+}  // namespace tessera::inline abi_0_1
