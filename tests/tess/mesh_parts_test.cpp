@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "support/synthetic_sets.h"
+#include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
 #include "tessera/tessellation.h"
+#include "tessera/topology.h"
 
 namespace tessera {
 namespace {
@@ -97,6 +99,36 @@ TEST(MeshParts, WhatDoesNotBelongTogetherIsRefused) {
   surfaces.surfaces.pop_back();
   EXPECT_EQ(parts_by_surface(mesh, set, surfaces).status().message(), "triangle 24 is of surface 3, there are 3");
   EXPECT_TRUE(value_of(parts_by_surface(Mesh{}, set, surfaces)).empty());
+}
+
+TEST(MeshParts, FacesOfAShapeHaveTheirNamesAndColours) {
+  const Colour red{1, 0, 0}, blue{0, 0, 1};
+  const Model surfaces = model();
+  Model part;
+  Shape& shape = part.shapes.emplace_back();
+  for (const ModelSurface& surface : surfaces.surfaces) shape.faces.push_back({surface});
+  shape.faces[3].colour = red;
+  const PatchSet set = value_of(make_patch_set(shape));
+  Mesh mesh = mesh_of(set);
+  const std::vector<MeshPart> faces = value_of(parts_by_face(mesh, set, shape));
+  ASSERT_EQ(faces.size(), 3u);
+  EXPECT_EQ(faces[0].name, "front");
+  EXPECT_EQ(faces[1].name, "face 1");
+  EXPECT_EQ(faces[1].colour, std::nullopt);
+  EXPECT_EQ(faces[2].colour, red);
+  EXPECT_EQ(faces[2].first_triangle, 24u);
+  // In a model, the colour of an instance is for faces without one.
+  part.instances = {{}, {.first_surface = 4, .colour = blue}};
+  part.surfaces = value_of(placed_faces(part.shapes, part.instances));
+  const PatchSet both = value_of(make_patch_set(part));
+  const std::vector<MeshPart> parts = value_of(parts_by_surface(mesh_of(both), both, part));
+  ASSERT_EQ(parts.size(), 6u);
+  const std::optional<Colour> colours[] = {{}, {}, red, blue, blue, red};
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(parts[k].colour, colours[k]) << k;
+  mesh.patches[17] = 4;
+  EXPECT_EQ(parts_by_face(mesh, set, shape).status().message(), "triangle 17 is of patch 4, there are 4");
+  shape.faces.pop_back();
+  EXPECT_EQ(parts_by_face(mesh_of(set), set, shape).status().message(), "triangle 24 is of face 3, there are 3");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "tessera/colour.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 
@@ -48,13 +49,6 @@ struct BrepEdge {
 struct Shell {
   std::vector<std::uint32_t> faces;  ///< indices into Shape::faces
   std::uint32_t solid = no_id;       ///< below Shape::solid_count: it is the solid's skin, or bounds a cavity of it
-};
-
-/// A colour in sRGB, each value from 0 to 1, as files state it.
-struct Colour {
-  float red = 0, green = 0, blue = 0;
-  float alpha = 1;                                                 ///< 1: opaque
-  friend bool operator==(const Colour&, const Colour&) = default;  ///< by all values
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -12,6 +12,7 @@
 
 #include "tessera/files.h"
 #include "tessera/mesh.h"
+#include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 
@@ -117,7 +118,8 @@ Status write_model(const PatchSet& set, const std::filesystem::path& path);
 /// - .ply: binary, little endian. Quads are faces of four corners, after all triangles.
 /// - .stl: binary, little endian, only the corners of triangles.
 /// - .glb and .gltf: glTF 2.0, one file with all in it. One mesh for each of Mesh::parts; positions are unchanged, and
-///   the origin is the translation of their node. Normals are made unit; parameters are texture coordinates.
+///   the origin is the translation of their node. Normals are made unit; parameters are texture coordinates. Colours of
+///   parts become materials.
 ///
 /// .obj, .ply and .stl add the origin in double and round to float where needed. .stl and glTF have no faces of four
 /// corners and get two triangles per quad, see split_quads().
@@ -126,6 +128,19 @@ Status write_model(const PatchSet& set, const std::filesystem::path& path);
 /// invalid_argument (no vertices; for .stl, .glb and .gltf no triangles; an index or a part out of range),
 /// count_mismatch, non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+
+/// Writes the meshes of an assembly in a format of write_mesh(). The file appears whole or not at all.
+///
+/// - .glb and .gltf: each shape is stored once, and each instance is a node with its name and placement. Colours become
+///   materials: a mesh has one primitive per colour of its parts. Positions are relative to each mesh's origin, which
+///   the node adds. The unit of glTF is the metre: the node above all others scales by 0.001 if the assembly's unit is
+///   "mm"; "um", "cm", "m", "km", "inch" and "ft" are known too, and any other unit counts as metres. Instances that are
+///   sheared have a mesh of their own, because nodes cannot shear.
+/// - other formats: one mesh, as flatten() makes it, in the assembly's unit; colours are not kept.
+///
+/// Errors: those of write_mesh() (index = the shape); invalid_argument (an instance of no shape, a colour beyond 0 to 1; index
+/// = the instance), non_finite (a placement).
+Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path);
 
 /// How read_mesh() treats polygons, and where it reports what it skips.
 struct MeshReadOptions {
@@ -159,6 +174,9 @@ Status check_model_format(const std::filesystem::path& path);
 /// Writes the mesh to a file that was created for `path`, and leaves commit() to the caller, which reports failed
 /// writes. Errors: unsupported, and those of a mesh that no file can hold.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFile& out);
+/// Writes the assembly to a file that was created for `path`, and leaves commit() to the caller. Errors: as
+/// write_assembly(), but for io_error.
+Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path, OutputFile& out);
 /// Writes the model to a file that was created for `path`, and leaves commit() to the caller, which reports failed
 /// writes. Errors: as write_model(), but for io_error.
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit,

@@ -4,10 +4,12 @@
 // Memory: meshes own theirs; views refer to the caller's. Threads: any number of calls at once on const meshes.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "tessera/colour.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
@@ -43,6 +45,7 @@ struct MeshPart {
   std::string name;                                    ///< the surface's name
   std::size_t first_triangle = 0, triangle_count = 0;  ///< a run of the mesh's triangles
   std::size_t first_quad = 0, quad_count = 0;          ///< a run of the mesh's quads
+  std::optional<Colour> colour = {};                   ///< as the file states it
 };
 
 /// A mesh that owns its memory, interleaved by attribute: 3 floats per position or normal, 2 per parameter.

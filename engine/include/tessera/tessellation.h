@@ -368,7 +368,8 @@ class Tessellation {
 /// - `set`: the set that mesh.patches refers to, made of `model`.
 ///
 /// Runs are counted in the order of the patches: the next triangle or quad is the one with the lower patch. A part has
-/// the name of its surface in the model, or "surface 3" if that name is empty.
+/// the name of its surface in the model, or "surface 3" if that name is empty. It has the colour of the face that the
+/// surface is, or else of the face's instance.
 ///
 /// Errors: count_mismatch (not one patch per triangle and per quad), invalid_argument (no such patch in the set, or no
 /// such surface in the model; index = the triangle or quad).

@@ -25,6 +25,7 @@ struct Format {
   Result<Model> (*read_model)(std::string_view, std::string_view) = nullptr;
   Result<Mesh> (*read_mesh)(std::string_view, std::string_view, const MeshReadOptions&) = nullptr;
   Status (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
+  Status (*write_assembly)(const MeshAssembly&, OutputFile&) = nullptr;  ///< none: as one mesh
   decltype(&write_bpt) write_model = nullptr;
 };
 
@@ -41,8 +42,8 @@ constexpr std::array<Format, 10> formats{{
     {.extension = ".rib", .read_model = parse_rib},
     {.extension = ".ply", .read_mesh = parse_ply, .write_mesh = write_ply},
     {.extension = ".stl", .read_mesh = parse_stl, .write_mesh = write_stl},
-    {.extension = ".glb", .read_mesh = parse_gltf, .write_mesh = write_glb},
-    {.extension = ".gltf", .read_mesh = parse_gltf, .write_mesh = write_gltf},
+    {.extension = ".glb", .read_mesh = parse_gltf, .write_mesh = write_glb, .write_assembly = write_glb_assembly},
+    {.extension = ".gltf", .read_mesh = parse_gltf, .write_mesh = write_gltf, .write_assembly = write_gltf_assembly},
 }};
 
 constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";
@@ -77,6 +78,22 @@ Result<Content> read_as(const fs::path& path, Ability Format::*member, std::stri
   if (is_gzip(path, *bytes)) bytes = unpack_gzip(*bytes, path.string());
   if (!bytes) return bytes.status();
   return ((*format)->*member)(*bytes, path.string(), options...);
+}
+
+Status in_output(const fs::path& path, const Status& status) {
+  return status.ok() ? status : Status(status.code(), path.string() + ": " + status.message(), status.index());
+}
+
+/// Makes the file, which `write` fills, and commits it.
+template <class Write>
+Status write_file(const fs::path& path, const Write& write) {
+  return guarded([&]() -> Status {
+    if (const Status status = check_mesh_format(path); !status.ok()) return status;
+    Result<OutputFile> out = OutputFile::make(path);
+    if (!out) return out.status();
+    const Status status = write(*out);
+    return status.ok() ? out->commit() : status;
+  });
 }
 
 }  // namespace
@@ -121,22 +138,27 @@ Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {
   return guarded([&]() -> Status {
     const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers);
     if (!format) return format.status();
-    Status status = validate(mesh);
-    if (!status.ok()) return Status(status.code(), path.string() + ": " + status.message(), status.index());
-    status = (*format)->write_mesh(mesh, out);
-    return status.ok() ? status : Status(status.code(), path.string() + ": " + status.message(), status.index());
+    const Status status = validate(mesh);
+    return in_output(path, status.ok() ? (*format)->write_mesh(mesh, out) : status);
+  });
+}
+
+Status write_assembly(const MeshAssembly& assembly, const fs::path& path, OutputFile& out) {
+  return guarded([&]() -> Status {
+    const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers);
+    if (!format) return format.status();
+    if (const Status status = validate(assembly); !status.ok()) return in_output(path, status);
+    if ((*format)->write_assembly) return in_output(path, (*format)->write_assembly(assembly, out));
+    const Result<Mesh> flat = flatten(assembly);
+    return flat ? write_mesh(*flat, path, out) : in_output(path, flat.status());
   });
 }
 
 Status write_mesh(const Mesh& mesh, const fs::path& path) {
-  return guarded([&]() -> Status {
-    Status status = check_mesh_format(path);
-    if (!status.ok()) return status;
-    Result<OutputFile> out = OutputFile::make(path);
-    if (!out) return out.status();
-    status = write_mesh(mesh, path, *out);
-    return status.ok() ? out->commit() : status;
-  });
+  return write_file(path, [&](OutputFile& out) { return write_mesh(mesh, path, out); });
+}
+Status write_assembly(const MeshAssembly& assembly, const fs::path& path) {
+  return write_file(path, [&](OutputFile& out) { return write_assembly(assembly, path, out); });
 }
 
 }  // namespace tessera::inline abi_0_1

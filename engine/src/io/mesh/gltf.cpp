@@ -1,26 +1,23 @@
 // glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021) by tinygltf. All numbers lie in one buffer: positions, normals
-// and parameters of all vertices, then the indices. A part refers to the range of vertices that its indices span, so
-// parts may share vertices and none is stored twice.
+// and parameters of all vertices of a mesh, then its indices.
 
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <ostream>
+#include <span>
 #include <streambuf>
 #include <string>
 
+#include "io/mesh/gltf_content.h"
 #include "io/mesh/mesh_formats.h"
+#include "tessera/mesh_assembly.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "glTF is written in the machine's own byte order");
 
 constexpr std::size_t max_bytes = std::numeric_limits<std::int32_t>::max();  // tinygltf keeps offsets in int
 
@@ -43,195 +40,15 @@ class FileBuffer : public std::streambuf {
   OutputFile& out_;
 };
 
-/// JSON holds UTF-8 only: invalid bytes become U+FFFD.
-std::string utf8(const std::string& name) {
-  const std::string quoted = nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return nlohmann::json::parse(quoted).get<std::string>();
+Status check_size(std::size_t bytes) {
+  if (bytes <= max_bytes) return {};
+  return {StatusCode::unsupported,
+          "the mesh takes " + std::to_string(bytes) + " bytes, a glTF file is limited to " + std::to_string(max_bytes)};
 }
 
-Vec3 vector_at(const std::vector<float>& values, std::size_t k) {
-  return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
-}
+Status no_triangles() { return {StatusCode::invalid_argument, "the mesh has no triangles, glTF needs at least one"}; }
 
-bool is_unit(const Vec3& normal) {
-  constexpr double tolerance = 1e-3;  // of the squared length; the reference validator accepts 6.7e-3 of the length
-  return std::abs(dot(normal, normal) - 1) <= tolerance;
-}
-
-/// The mesh's normals, of unit length. An undefined one becomes the mean of the triangles around, weighted by area, or
-/// the z axis if that mean is undefined too.
-std::vector<float> unit_normals(const Mesh& mesh) {
-  std::vector<Vec3> sums(mesh.vertex_count());
-  for (std::size_t k = 0; k < mesh.indices.size(); k += 3) {
-    const Vec3 a = vector_at(mesh.positions, mesh.indices[k]), b = vector_at(mesh.positions, mesh.indices[k + 1]),
-               c = vector_at(mesh.positions, mesh.indices[k + 2]);
-    const Vec3 area = cross(b - a, c - a);
-    for (std::size_t corner = 0; corner < 3; ++corner) sums[mesh.indices[k + corner]] += area;
-  }
-  std::vector<float> normals = mesh.normals;
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    Vec3 normal = vector_at(mesh.normals, k);
-    if (is_unit(normal)) continue;
-    if (!(length(normal) > 0)) normal = sums[k];
-    normal = length(normal) > 0 ? (1 / length(normal)) * normal : Vec3{0, 0, 1};
-    normals[3 * k] = static_cast<float>(normal.x), normals[3 * k + 1] = static_cast<float>(normal.y);
-    normals[3 * k + 2] = static_cast<float>(normal.z);
-  }
-  return normals;
-}
-
-bool are_unit(const std::vector<float>& normals) {
-  for (std::size_t k = 0; k < normals.size() / 3; ++k)
-    if (!is_unit(vector_at(normals, k))) return false;
-  return true;
-}
-
-class GltfMesh {
- public:
-  explicit GltfMesh(const Mesh& mesh) : mesh_(mesh), parts_(mesh.parts) {
-    if (parts_.empty()) parts_.push_back({{}, 0, mesh.triangle_count()});
-  }
-
-  /// The size of the buffer.
-  static std::size_t byte_count(const Mesh& mesh) {
-    return 4 * (mesh.positions.size() + mesh.normals.size() + mesh.parameters.size() + mesh.indices.size());
-  }
-
-  tinygltf::Model make() && {
-    model_.asset.generator = "Tessera";
-    add_material();
-    model_.buffers.resize(1);
-    model_.buffers[0].data.reserve(byte_count(mesh_));
-    positions_ = add_view(mesh_.positions, 3);
-    if (!mesh_.normals.empty()) normals_ = add_view(are_unit(mesh_.normals) ? mesh_.normals : unit_normals(mesh_), 3);
-    if (!mesh_.parameters.empty()) parameters_ = add_view(mesh_.parameters, 2);
-    indices_ = static_cast<int>(model_.bufferViews.size());
-    model_.bufferViews.push_back(view(TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, 4 * mesh_.indices.size()));
-    add_root();
-    for (const MeshPart& part : parts_)
-      if (part.triangle_count > 0) add_part(part);
-    return std::move(model_);
-  }
-
- private:
-  /// A grey material, seen from both sides: surfaces need not be closed.
-  void add_material() {
-    tinygltf::Material& material = model_.materials.emplace_back();
-    material.doubleSided = true;
-    material.pbrMetallicRoughness.metallicFactor = 0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.5;
-    material.pbrMetallicRoughness.baseColorFactor = {0.8, 0.8, 0.8, 1};
-  }
-
-  /// A view of the next `bytes` of the buffer.
-  tinygltf::BufferView view(int target, std::size_t bytes) const {
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = model_.buffers[0].data.size();
-    view.byteLength = bytes;
-    view.target = target;
-    return view;
-  }
-
-  int add_view(const std::vector<float>& values, std::size_t components) {
-    tinygltf::BufferView added = view(TINYGLTF_TARGET_ARRAY_BUFFER, 4 * values.size());
-    added.byteStride = 4 * components;
-    model_.bufferViews.push_back(added);
-    append(values.data(), values.size());
-    return static_cast<int>(model_.bufferViews.size()) - 1;
-  }
-
-  template <class T>
-  void append(const T* values, std::size_t count) {
-    std::vector<unsigned char>& bytes = model_.buffers[0].data;
-    const std::size_t begin = bytes.size();
-    bytes.resize(begin + count * sizeof(T));
-    std::memcpy(bytes.data() + begin, values, count * sizeof(T));
-  }
-
-  /// Adds the node of the origin, the parent of all others.
-  void add_root() {
-    tinygltf::Node& root = model_.nodes.emplace_back();
-    if (!(mesh_.origin == Vec3{})) root.translation = {mesh_.origin.x, mesh_.origin.y, mesh_.origin.z};
-    model_.scenes.emplace_back().nodes = {0};
-    model_.defaultScene = 0;
-  }
-
-  void add_part(const MeshPart& part) {
-    const std::span indices = std::span(mesh_.indices).subspan(3 * part.first_triangle, 3 * part.triangle_count);
-    const auto [least, most] = std::minmax_element(indices.begin(), indices.end());
-    const std::size_t first = *least, count = *most - first + 1;
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = 0;
-    primitive.attributes["POSITION"] = add_vertices(positions_, TINYGLTF_TYPE_VEC3, first, count);
-    if (normals_ >= 0) primitive.attributes["NORMAL"] = add_vertices(normals_, TINYGLTF_TYPE_VEC3, first, count);
-    if (parameters_ >= 0)
-      primitive.attributes["TEXCOORD_0"] = add_vertices(parameters_, TINYGLTF_TYPE_VEC2, first, count);
-    add_box(model_.accessors[static_cast<std::size_t>(primitive.attributes["POSITION"])], first, count);
-    primitive.indices = add_indices(indices, *least);
-    tinygltf::Node node;
-    node.name = utf8(part.name);
-    node.mesh = static_cast<int>(model_.meshes.size());
-    tinygltf::Mesh& mesh = model_.meshes.emplace_back();
-    mesh.name = node.name;
-    mesh.primitives.push_back(std::move(primitive));
-    model_.nodes[0].children.push_back(static_cast<int>(model_.nodes.size()));
-    model_.nodes.push_back(std::move(node));
-  }
-
-  int add_accessor(int view, int type, int component, std::size_t offset, std::size_t count) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView = view;
-    accessor.byteOffset = offset;
-    accessor.componentType = component;
-    accessor.type = type;
-    accessor.count = count;
-    model_.accessors.push_back(std::move(accessor));
-    return static_cast<int>(model_.accessors.size()) - 1;
-  }
-  int add_vertices(int view, int type, std::size_t first, std::size_t count) {
-    const std::size_t stride = model_.bufferViews[static_cast<std::size_t>(view)].byteStride;
-    return add_accessor(view, type, TINYGLTF_COMPONENT_TYPE_FLOAT, first * stride, count);
-  }
-  /// Adds the indices of the part's triangles, counted from its first vertex.
-  int add_indices(std::span<const std::uint32_t> indices, std::uint32_t first) {
-    std::vector<std::uint32_t> own(indices.begin(), indices.end());
-    for (std::uint32_t& index : own) index -= first;
-    const std::size_t offset = model_.buffers[0].data.size() - model_.bufferViews.back().byteOffset;
-    append(own.data(), own.size());
-    return add_accessor(indices_, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, offset, own.size());
-  }
-  /// Adds the bounding box, which the format requires for positions.
-  void add_box(tinygltf::Accessor& accessor, std::size_t first, std::size_t count) const {
-    const float* p = &mesh_.positions[3 * first];
-    std::array<float, 3> least{p[0], p[1], p[2]}, most = least;
-    for (std::size_t k = 0; k < count; ++k, p += 3)
-      for (std::size_t c = 0; c < 3; ++c) {
-        least[c] = std::min(least[c], p[c]);
-        most[c] = std::max(most[c], p[c]);
-      }
-    accessor.minValues.assign(least.begin(), least.end());
-    accessor.maxValues.assign(most.begin(), most.end());
-  }
-
-  const Mesh& mesh_;
-  std::vector<MeshPart> parts_;
-  tinygltf::Model model_;
-  int positions_ = -1, normals_ = -1, parameters_ = -1, indices_ = -1;
-};
-
-Status write(const Mesh& mesh, OutputFile& out, bool binary) {
-  if (!mesh.quads.empty()) {
-    const Result<Mesh> split = split_quads(mesh);
-    return split ? write(*split, out, binary) : split.status();
-  }
-  if (mesh.triangle_count() == 0)
-    return {StatusCode::invalid_argument, "the mesh has no triangles, glTF needs at least one"};
-  if (const std::size_t bytes = GltfMesh::byte_count(mesh); bytes > max_bytes)
-    return {StatusCode::unsupported, "the mesh takes " + std::to_string(bytes) + " bytes, a glTF file is limited to " +
-                                         std::to_string(max_bytes)};
-  const tinygltf::Model model = GltfMesh(mesh).make();
+Status write(const tinygltf::Model& model, OutputFile& out, bool binary) {
   FileBuffer buffer(out);
   std::ostream stream(&buffer);
   const bool pretty = !binary;
@@ -239,9 +56,176 @@ Status write(const Mesh& mesh, OutputFile& out, bool binary) {
   return {StatusCode::internal, "tinygltf could not write the mesh"};
 }
 
+std::vector<double> numbers(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+/// One node and one mesh for each part.
+Status write(const Mesh& mesh, OutputFile& out, bool binary) {
+  if (!mesh.quads.empty()) {
+    const Result<Mesh> split = split_quads(mesh);
+    return split ? write(*split, out, binary) : split.status();
+  }
+  if (mesh.triangle_count() == 0) return no_triangles();
+  if (Status status = check_size(GltfContent::byte_count(mesh)); !status.ok()) return status;
+  GltfContent content(GltfContent::byte_count(mesh));
+  if (!(mesh.origin == Vec3{})) content.root().translation = numbers(mesh.origin);
+  content.add_vertices(mesh);
+  std::vector<MeshPart> parts = mesh.parts;
+  if (parts.empty()) parts.push_back({{}, 0, mesh.triangle_count()});
+  for (const MeshPart& part : parts) {
+    if (part.triangle_count == 0) continue;
+    const std::span indices = std::span(mesh.indices).subspan(3 * part.first_triangle, 3 * part.triangle_count);
+    const auto [least, most] = std::minmax_element(indices.begin(), indices.end());
+    tinygltf::Primitive primitive = content.add_primitive(indices, *least, *most - *least + 1);
+    primitive.material = content.material(part.colour);
+    content.add_node(part.name).mesh = content.add_mesh(part.name, {primitive});
+  }
+  return write(std::move(content).take(), out, binary);
+}
+
+/// The triangles of a shape's mesh that have one colour of their own, or none.
+struct ColouredTriangles {
+  int material;
+  tinygltf::Primitive primitive;
+};
+
+/// Adds the vertices and triangles of a shape, by colours in the order of their first parts.
+std::vector<ColouredTriangles> add_shape(GltfContent& content, const Mesh& mesh) {
+  std::vector<int> materials;
+  std::map<int, std::vector<std::uint32_t>> indices;
+  const auto add = [&](int material, std::size_t first, std::size_t count) {
+    if (count == 0) return;
+    std::vector<std::uint32_t>& of_material = indices[material];
+    if (of_material.empty()) materials.push_back(material);
+    const std::span triangles = std::span(mesh.indices).subspan(3 * first, 3 * count);
+    of_material.insert(of_material.end(), triangles.begin(), triangles.end());
+  };
+  for (const MeshPart& part : mesh.parts) add(content.material(part.colour), part.first_triangle, part.triangle_count);
+  if (mesh.parts.empty()) add(content.material({}), 0, mesh.triangle_count());
+  std::vector<ColouredTriangles> added;
+  if (!materials.empty()) content.add_vertices(mesh);
+  for (const int material : materials)
+    added.push_back({material, content.add_primitive(indices[material], 0, mesh.vertex_count())});
+  return added;
+}
+
+/// The primitives of an instance; its colour is for triangles without one.
+std::vector<tinygltf::Primitive> coloured(const std::vector<ColouredTriangles>& shape, int none, int colour) {
+  std::vector<tinygltf::Primitive> primitives;
+  for (const ColouredTriangles& triangles : shape) {
+    primitives.push_back(triangles.primitive);
+    primitives.back().material = triangles.material == none ? colour : triangles.material;
+  }
+  return primitives;
+}
+
+/// Places the vertices of a mesh, which are relative to an origin.
+void place(tinygltf::Node& node, const Affine& placement, const Vec3& origin) {
+  const std::array<Vec3, 3>& c = placement.columns;
+  const Vec3 t = placement.point(origin);
+  if (c != Affine().columns)
+    node.matrix = {c[0].x, c[0].y, c[0].z, 0, c[1].x, c[1].y, c[1].z, 0, c[2].x, c[2].y, c[2].z, 0, t.x, t.y, t.z, 1};
+  else if (!(t == Vec3{}))
+    node.translation = numbers(t);
+}
+
+/// Whether a node can have the placement: it turns, scales and moves, but does not shear (section 3.5.3).
+bool fits_node(const Affine& placement) {
+  constexpr double rounding = 1e-6;
+  const std::array<Vec3, 3>& c = placement.columns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = c[k], &b = c[(k + 1) % 3];
+    if (!(length(a) > 0) || std::abs(dot(a, b)) > rounding * length(a) * length(b)) return false;
+  }
+  return true;
+}
+
+/// Gives a mesh of its own, in place, to each instance whose placement fits no node, and makes triangles of quads.
+Status prepare(MeshAssembly& assembly) {
+  for (MeshInstance& instance : assembly.instances) {
+    if (fits_node(instance.placement)) continue;
+    const ShapeMesh& shape = assembly.shapes[instance.shape];
+    Result<Mesh> placed = flatten({.shapes = {shape}, .instances = {{.placement = instance.placement}}});
+    if (!placed) return placed.status();
+    instance.shape = assembly.shapes.size();
+    instance.placement = {};
+    assembly.shapes.push_back({shape.name, *std::move(placed)});
+  }
+  for (ShapeMesh& shape : assembly.shapes) {
+    Result<Mesh> split = split_quads(shape.mesh);
+    if (!split) return split.status();
+    shape.mesh = *std::move(split);
+  }
+  return {};
+}
+
+bool needs_preparation(const MeshAssembly& assembly) {
+  return std::ranges::any_of(assembly.shapes, [](const ShapeMesh& shape) { return shape.mesh.quad_count() > 0; }) ||
+         !std::ranges::all_of(assembly.instances,
+                              [](const MeshInstance& instance) { return fits_node(instance.placement); });
+}
+
+/// The metres of a unit; 1 for unknown ones.
+double metres(const std::string& unit) {
+  static const std::map<std::string, double> units{{"um", 1e-6}, {"mm", 1e-3},     {"cm", 1e-2},  {"m", 1},
+                                                   {"km", 1e3},  {"inch", 0.0254}, {"ft", 0.3048}};
+  const auto known = units.find(unit);
+  return known == units.end() ? 1 : known->second;
+}
+
+/// Adds all shapes that have instances with triangles, each once, and a node for each instance.
+class AssemblyContent {
+ public:
+  AssemblyContent(const MeshAssembly& assembly, std::size_t bytes) : assembly_(assembly), content_(bytes) {
+    content_.name(content_.root(), assembly.name);
+    if (const double scale = metres(assembly.unit); scale != 1) content_.root().scale = {scale, scale, scale};
+    for (const MeshInstance& instance : assembly.instances) add(instance);
+  }
+
+  tinygltf::Model take() && { return std::move(content_).take(); }
+
+ private:
+  void add(const MeshInstance& instance) {
+    const ShapeMesh& shape = assembly_.shapes[instance.shape];
+    tinygltf::Node& node = content_.add_node(instance.name.empty() ? shape.name : instance.name);
+    place(node, instance.placement, shape.mesh.origin);
+    const auto [triangles, is_new] = shapes_.try_emplace(instance.shape);
+    if (is_new) triangles->second = add_shape(content_, shape.mesh);
+    if (triangles->second.empty()) return;
+    const int none = content_.material({});
+    const bool counts = std::ranges::any_of(triangles->second, [&](const auto& of) { return of.material == none; });
+    const int colour = counts ? content_.material(instance.colour) : none;
+    const auto [mesh, is_first] = meshes_.try_emplace({instance.shape, colour});
+    if (is_first) mesh->second = content_.add_mesh(shape.name, coloured(triangles->second, none, colour));
+    node.mesh = mesh->second;
+  }
+
+  const MeshAssembly& assembly_;
+  GltfContent content_;
+  std::map<std::size_t, std::vector<ColouredTriangles>> shapes_;  ///< by index
+  std::map<std::pair<std::size_t, int>, int> meshes_;             ///< by shape and material of triangles without colour
+};
+
+/// One mesh for each shape and colour of instances, all of which share the shape's vertices and indices.
+Status write(const MeshAssembly& assembly, OutputFile& out, bool binary) {
+  if (needs_preparation(assembly)) {
+    MeshAssembly prepared = assembly;
+    const Status status = prepare(prepared);
+    return status.ok() ? write(prepared, out, binary) : status;
+  }
+  std::size_t bytes = 0, triangles = 0;
+  for (const ShapeMesh& shape : assembly.shapes) bytes += GltfContent::byte_count(shape.mesh);
+  for (const MeshInstance& instance : assembly.instances)
+    triangles += assembly.shapes[instance.shape].mesh.triangle_count();
+  if (triangles == 0) return no_triangles();
+  if (Status status = check_size(bytes); !status.ok()) return status;
+  return write(AssemblyContent(assembly, bytes).take(), out, binary);
+}
+
 }  // namespace
 
 Status write_glb(const Mesh& mesh, OutputFile& out) { return write(mesh, out, true); }
 Status write_gltf(const Mesh& mesh, OutputFile& out) { return write(mesh, out, false); }
+Status write_glb_assembly(const MeshAssembly& assembly, OutputFile& out) { return write(assembly, out, true); }
+Status write_gltf_assembly(const MeshAssembly& assembly, OutputFile& out) { return write(assembly, out, false); }
 
 }  // namespace tessera::inline abi_0_1

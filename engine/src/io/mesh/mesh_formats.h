@@ -8,6 +8,7 @@
 #include "tessera/files.h"
 #include "tessera/io.h"
 #include "tessera/mesh.h"
+#include "tessera/mesh_assembly.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
@@ -39,6 +40,10 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
 /// TEXCOORD_0. Errors: invalid_argument (no triangles), unsupported (more than 2 GiB). Memory: three times the file.
 Status write_glb(const Mesh& mesh, OutputFile& out);
 Status write_gltf(const Mesh& mesh, OutputFile& out);
+/// Writes an assembly as glTF 2.0: each shape's numbers once, and one node per instance below a node that scales to
+/// metres. Errors: as above.
+Status write_glb_assembly(const MeshAssembly& assembly, OutputFile& out);
+Status write_gltf_assembly(const MeshAssembly& assembly, OutputFile& out);
 /// Reads glTF 2.0 in either form: the meshes of the default scene, each placed by its nodes, with triangles, strips and
 /// fans. One part per placed mesh. The first mesh's translation is the origin. Keeps normals and TEXCOORD_0 if every
 /// primitive has them. Buffers lie in the file, or in files beside it or below, which `name` as a path finds. Memory:

@@ -118,11 +118,55 @@ Status check_numbers(const Mesh& mesh) {
   return {};
 }
 
+bool is_valid(const std::optional<Colour>& colour) {
+  const auto is_share = [](float x) { return x >= 0 && x <= 1; };
+  return !colour ||
+         (is_share(colour->red) && is_share(colour->green) && is_share(colour->blue) && is_share(colour->alpha));
+}
+
+Status check_colours(const Mesh& mesh) {
+  const auto bad = std::ranges::find_if_not(mesh.parts, [](const MeshPart& part) { return is_valid(part.colour); });
+  if (bad == mesh.parts.end()) return {};
+  return invalid("the colour of a part of the mesh is not within 0 to 1",
+                 static_cast<std::size_t>(bad - mesh.parts.begin()));
+}
+
+Status check_instance(const MeshInstance& instance, std::size_t shapes) {
+  if (instance.shape >= shapes)
+    return {StatusCode::invalid_argument,
+            "it is of shape " + std::to_string(instance.shape) + ", there are " + std::to_string(shapes)};
+  if (!is_finite(instance.placement)) return {StatusCode::non_finite, "its placement is not finite"};
+  if (!is_valid(instance.colour)) return {StatusCode::invalid_argument, "its colour is not within 0 to 1"};
+  return {};
+}
+
+/// "instance 3 (bolt): ...".
+Status in_item(const char* kind, std::size_t k, const std::string& name, const Status& status) {
+  return {
+      status.code(),
+      std::string(kind) + " " + std::to_string(k) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message(),
+      static_cast<std::ptrdiff_t>(k)};
+}
+
 }  // namespace
 
 Status validate(const Mesh& mesh) {
-  for (Status (*const check)(const Mesh&) : {check_lengths, check_indices, check_numbers, check_parts})
+  for (Status (*const check)(const Mesh&) : {check_lengths, check_indices, check_numbers, check_parts, check_colours})
     if (Status status = check(mesh); !status.ok()) return status;
+  return {};
+}
+
+Status validate(const MeshAssembly& assembly) {
+  for (std::size_t k = 0; k < assembly.shapes.size(); ++k) {
+    const ShapeMesh& shape = assembly.shapes[k];
+    if (shape.mesh.positions.empty() && shape.mesh.indices.empty() && shape.mesh.quads.empty()) continue;
+    if (const Status status = validate(shape.mesh); !status.ok()) return in_item("shape", k, shape.name, status);
+  }
+  for (std::size_t k = 0; k < assembly.instances.size(); ++k) {
+    const MeshInstance& instance = assembly.instances[k];
+    if (const Status status = check_instance(instance, assembly.shapes.size()); !status.ok())
+      return in_item("instance", k, instance.name, status);
+  }
   return {};
 }
 

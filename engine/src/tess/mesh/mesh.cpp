@@ -75,7 +75,7 @@ Result<Mesh> split_quads(const Mesh& mesh) {
     QuadSplitter splitter(mesh);
     for (MeshPart& part : split.parts) {
       const std::size_t first = splitter.add(part);
-      part = {std::move(part.name), first, part.triangle_count + 2 * part.quad_count};
+      part = {std::move(part.name), first, part.triangle_count + 2 * part.quad_count, 0, 0, part.colour};
     }
     if (split.parts.empty()) splitter.add({{}, 0, mesh.triangle_count(), 0, mesh.quad_count()});
     std::move(splitter).put_into(split);

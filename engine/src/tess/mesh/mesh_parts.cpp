@@ -1,8 +1,12 @@
+#include <algorithm>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "base/text.h"
 #include "tess/mesh/mesh_parts.h"
 #include "tessera/guard.h"
+#include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 #include "tessera/tessellation.h"
@@ -22,15 +26,36 @@ Status check_patches(const char* face, std::size_t patches, std::size_t count) {
   return {StatusCode::count_mismatch, counted(patches, "patch", "patches") + " for " + counted(count, face)};
 }
 
-std::string name_of(const Model& model, std::size_t surface) {
-  const std::string& name = model.surfaces[surface].name;
-  return name.empty() ? "surface " + std::to_string(surface) : name;
+/// The surfaces that parts are named after.
+struct Surfaces {
+  const char* kind;  ///< "surface"
+  std::size_t count;
+  std::function<const std::string&(std::size_t)> name;
+  std::function<std::optional<Colour>(std::size_t)> colour;
+
+  /// A part of a surface, without faces yet.
+  MeshPart part(std::size_t surface) const {
+    MeshPart part{.name = name(surface), .colour = colour(surface)};
+    if (part.name.empty()) part.name = kind + (" " + std::to_string(surface));
+    return part;
+  }
+};
+
+/// The colour of a model's surface, if it is the face of an instance.
+std::optional<Colour> colour_of(const Model& model, std::size_t surface) {
+  const auto after = std::ranges::upper_bound(model.instances, surface, {}, &Instance::first_surface);
+  if (after == model.instances.begin()) return {};
+  const Instance& instance = after[-1];
+  const std::size_t face = surface - instance.first_surface;
+  if (instance.shape >= model.shapes.size() || face >= model.shapes[instance.shape].faces.size()) return {};
+  const std::optional<Colour>& own = model.shapes[instance.shape].faces[face].colour;
+  return own ? own : instance.colour;
 }
 
 /// Builds parts face by face.
 class PartList {
  public:
-  PartList(const PatchSet& set, const Model& model) : set_(set), model_(model) {}
+  PartList(const PatchSet& set, const Surfaces& surfaces) : set_(set), surfaces_(surfaces) {}
 
   /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such patch
   /// or surface).
@@ -40,8 +65,12 @@ class PartList {
       const std::size_t place = is_quad ? q : t;
       if (patch >= set_.patch_count()) return no_such("patch", patch, set_.patch_count(), face, place);
       const std::size_t surface = set_.source(patch).surface;
-      if (surface >= model_.surfaces.size()) return no_such("surface", surface, model_.surfaces.size(), face, place);
-      if (parts_.empty() || surface != surface_) parts_.push_back({name_of(model_, surface), t, 0, q, 0});
+      if (surface >= surfaces_.count) return no_such(surfaces_.kind, surface, surfaces_.count, face, place);
+      if (parts_.empty() || surface != surface_) {
+        parts_.push_back(surfaces_.part(surface));
+        parts_.back().first_triangle = t;
+        parts_.back().first_quad = q;
+      }
       patch_ = patch;
       surface_ = surface;
     }
@@ -53,11 +82,25 @@ class PartList {
 
  private:
   const PatchSet& set_;
-  const Model& model_;
+  const Surfaces& surfaces_;
   std::vector<MeshPart> parts_;
   std::uint32_t patch_ = 0;  ///< that of the last face
   std::size_t surface_ = 0;
 };
+
+Result<std::vector<MeshPart>> parts_of(const Mesh& mesh, const PatchSet& set, const Surfaces& surfaces) {
+  const std::size_t triangles = mesh.triangle_count(), quads = mesh.quad_count();
+  if (Status status = check_patches("triangle", mesh.patches.size(), triangles); !status.ok()) return status;
+  if (Status status = check_patches("quad", mesh.quad_patches.size(), quads); !status.ok()) return status;
+  PartList parts(set, surfaces);
+  for (std::size_t t = 0, q = 0; t < triangles || q < quads;) {
+    const bool is_quad = t == triangles || (q < quads && mesh.quad_patches[q] < mesh.patches[t]);
+    const std::uint32_t patch = is_quad ? mesh.quad_patches[q] : mesh.patches[t];
+    if (Status status = parts.add(patch, is_quad, t, q); !status.ok()) return status;
+    ++(is_quad ? q : t);
+  }
+  return std::move(parts).take();
+}
 
 }  // namespace
 
@@ -85,18 +128,22 @@ Status check_parts(const Mesh& mesh) {
 }
 
 Result<std::vector<MeshPart>> parts_by_surface(const Mesh& mesh, const PatchSet& set, const Model& model) {
-  return guarded([&]() -> Result<std::vector<MeshPart>> {
-    const std::size_t triangles = mesh.triangle_count(), quads = mesh.quad_count();
-    if (Status status = check_patches("triangle", mesh.patches.size(), triangles); !status.ok()) return status;
-    if (Status status = check_patches("quad", mesh.quad_patches.size(), quads); !status.ok()) return status;
-    PartList parts(set, model);
-    for (std::size_t t = 0, q = 0; t < triangles || q < quads;) {
-      const bool is_quad = t == triangles || (q < quads && mesh.quad_patches[q] < mesh.patches[t]);
-      const std::uint32_t patch = is_quad ? mesh.quad_patches[q] : mesh.patches[t];
-      if (Status status = parts.add(patch, is_quad, t, q); !status.ok()) return status;
-      ++(is_quad ? q : t);
-    }
-    return std::move(parts).take();
+  return guarded([&] {
+    return parts_of(mesh, set,
+                    {.kind = "surface",
+                     .count = model.surfaces.size(),
+                     .name = [&](std::size_t k) -> const std::string& { return *model.surfaces[k].name; },
+                     .colour = [&](std::size_t k) { return colour_of(model, k); }});
+  });
+}
+
+Result<std::vector<MeshPart>> parts_by_face(const Mesh& mesh, const PatchSet& set, const Shape& shape) {
+  return guarded([&] {
+    return parts_of(mesh, set,
+                    {.kind = "face",
+                     .count = shape.faces.size(),
+                     .name = [&](std::size_t k) -> const std::string& { return *shape.faces[k].name; },
+                     .colour = [&](std::size_t k) { return shape.faces[k].colour; }});
   });
 }
 

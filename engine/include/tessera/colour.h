@@ -1,0 +1,15 @@
+#pragma once
+// Colours of faces, parts and instances.
+
+#pragma GCC visibility push(default)
+namespace tessera::inline abi_0_1 {
+
+/// A colour in sRGB, each value from 0 to 1, as files state it.
+struct Colour {
+  float red = 0, green = 0, blue = 0;
+  float alpha = 1;                                                 ///< 1: opaque
+  friend bool operator==(const Colour&, const Colour&) = default;  ///< by all values
+};
+
+}  // namespace tessera::inline abi_0_1
+#pragma GCC visibility pop
