@@ -11,6 +11,7 @@
 #include "tessera/convert.h"
 #include "tessera/coons_patch.h"
 #include "tessera/curve.h"
+#include "tessera/edge_matching.h"
 #include "tessera/evaluate.h"
 #include "tessera/execution.h"
 #include "tessera/generic_callable.h"
