@@ -4,62 +4,198 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <random>
 
-#include "support/errors.h"
-#include "support/synthetic_sets.h"
-#include "tessera/topology.h"
+#include "block/unjoined_faces.h"
+#include "tessera/coons_patch.h"
+#include "tessera/nurbs_surface.h"
+#include "tessera/quadric.h"
 
 namespace tessera::test {
 namespace {
 
-/// Edges by their number of uses; degenerate ones are counted under 0.
-using Counts = std::map<std::size_t, std::size_t>;
-
-Counts counts_of(const Shape& shape) {
-  EXPECT_TRUE(check_topology(shape).ok()) << check_topology(shape).message();
-  const EdgeUses uses = value_of(edge_uses(shape));
-  Counts counts;
-  for (std::size_t k = 0; k < shape.edges.size(); ++k) ++counts[shape.edges[k].degenerate ? 0 : uses[k].size()];
-  return counts;
-}
-
-double largest_gap(const Shape& shape) {
-  const std::vector<double> gaps = value_of(edge_gaps(shape, 65));
-  return gaps.empty() ? 0 : *std::max_element(gaps.begin(), gaps.end());
-}
-
-std::size_t closed_count(const Shape& shape) {
-  const std::vector<bool> closed = value_of(closed_shells(shape));
-  return static_cast<std::size_t>(std::count(closed.begin(), closed.end(), true));
-}
-
-/// A bilinear face with the corners in the order around it.
-ModelSurface quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  return {"quad", value_of(BezierPatch::polynomial(1, 1, std::vector<Vec3>{a, d, b, c}))};
-}
-
-std::vector<ModelSurface> cube(double size = 1, const Vec3& at = {}) {
-  const auto corner = [&](int k) { return at + size * Vec3{double(k & 1), double(k >> 1 & 1), double(k >> 2 & 1)}; };
-  std::vector<ModelSurface> faces;
-  for (const auto& f : std::array<std::array<int, 4>, 6>{
-           {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}})
-    faces.push_back(quad(corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])));
-  return faces;
-}
-
 TEST(EdgeMatching, SidesOfACubeBecomeTwelveEdges) {
-  const Shape shape = value_of(joined_shape(cube(), 1e-3));
+  const Shape shape = joined(cube(), 1e-3);
   EXPECT_EQ(counts_of(shape), (Counts{{2, 12}}));
   EXPECT_EQ(shape.vertices.size(), 8u);
   EXPECT_EQ(closed_count(shape), 1u);
   EXPECT_EQ(shape.solid_count, 1u);
   EXPECT_EQ(largest_gap(shape), 0);
+  std::vector<ModelSurface> two = cube();
+  for (const ModelSurface& face : cube(2, {5, 0, 0})) two.push_back(face);
+  EXPECT_EQ(joined(two, 1e-3).solid_count, 2u);
+  two.erase(two.begin());
+  const Shape open = joined(two, 1e-3);
+  EXPECT_EQ(counts_of(open), (Counts{{1, 4}, {2, 20}}));
+  EXPECT_EQ(open.shells.size(), 2u);
+  EXPECT_EQ(open.solid_count, 1u);
+}
+
+TEST(EdgeMatching, ASideIsDividedWhereThreeMeetIt) {
+  const Shape shape = joined(one_against_three(0.3, 0.7), 1e-3);
+  EXPECT_EQ(counts_of(shape), (Counts{{1, 8}, {2, 5}}));
+  EXPECT_EQ(edge_loops(shape.faces[0])[0].curves.size(), 6u);
+  EXPECT_LT(largest_gap(shape), 1e-15);
+  // Each curve begins where the one before it ends.
+  for (const ShapeFace& face : shape.faces) {
+    const std::vector<Curve>& curves = edge_loops(face)[0].curves;
+    for (std::size_t k = 0; k < curves.size(); ++k) {
+      const Curve &before = curves[k], &after = curves[(k + 1) % curves.size()];
+      EXPECT_LT(length(position(before, before.domain().to) - position(after, after.domain().from)), 1e-15);
+    }
+  }
+}
+
+TEST(EdgeMatching, PartsOfASideOverlap) {
+  // Both sides reach beyond the other's.
+  const std::vector<ModelSurface> faces{quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+                                        quad({1, 0.25, 0}, {2, 0.25, 0}, {2, 1.5, 0}, {1, 1.5, 0})};
+  const Shape shape = joined(faces, 1e-3);
+  EXPECT_EQ(counts_of(shape), (Counts{{1, 8}, {2, 1}}));
+  EXPECT_EQ(shape.vertices.size(), 8u);
+}
+
+TEST(EdgeMatching, ATouchingCornerDividesNothing) {
+  const std::vector<ModelSurface> faces{quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+                                        quad({1, 0.5, 0}, {2, 0, 0}, {3, 0.5, 0}, {2, 1, 0})};
+  EXPECT_EQ(counts_of(joined(faces, 1e-3)), (Counts{{1, 8}}));
+}
+
+TEST(EdgeMatching, DistanceDecides) {
+  for (const double distance : {1e-6, 1e-3, 0.1}) {
+    const auto moved = [&](double gap) { return joined(one_against_three(0.3, 0.7, gap * distance), distance); };
+    EXPECT_EQ(counts_of(moved(0.99)), (Counts{{1, 8}, {2, 5}})) << distance;
+    EXPECT_NEAR(largest_gap(moved(0.99)), 0.99 * distance, 0.02 * distance);
+    EXPECT_EQ(counts_of(moved(1.01)), (Counts{{1, 12}, {2, 2}})) << distance;
+  }
+}
+
+/// The second face's side runs along the first one's, by another curve.
+Shape beside(const Curve& first, const Curve& second, double distance) {
+  const auto face = [](const Curve& side, double height) {
+    std::vector<Vec3> points(side.points().begin(), side.points().end());
+    for (Vec3& p : points) p = p + Vec3{0, 0, height};
+    const std::vector<double> weights(side.weights().begin(), side.weights().end());
+    const Curve other = value_of(Curve::bezier(points, weights, side.domain()));
+    return ModelSurface{"wall", value_of(RuledSurface::make(side, other))};
+  };
+  return joined({face(first, 1), face(second, -1)}, distance);
+}
+
+TEST(EdgeMatching, PacesOfCurvesArePaired) {
+  const double c = std::sqrt(0.5);
+  const std::vector<Vec3> arc{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, back{{0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
+  const auto rational = [](const std::vector<Vec3>& points, double a, double b, double w, const Interval& range) {
+    return value_of(Curve::bezier(points, std::vector<double>{a, w, b}, range));
+  };
+  const Curve first = rational(arc, 1, 1, c, {0, 1});
+  // Moebius changes of the parameter: the weights 1, k c, k^2 are those of the same arc.
+  for (const double k : {0.25, 1.0, 3.0})
+    for (const auto& points : {arc, back}) {
+      const Shape shape = beside(first, rational(points, 1, k * k, k * c, {-3, 5}), 1e-3);
+      EXPECT_EQ(counts_of(shape), (Counts{{1, 6}, {2, 1}})) << k;
+      EXPECT_LT(largest_gap(shape), 1e-14) << k;
+    }
+  // A polynomial change has no fraction that equals it.
+  const Curve even = line({0, 0, 0}, {1, 0, 0});
+  const Curve slow = value_of(Curve::bezier(std::vector<Vec3>{{1, 0, 0}, {0.7, 0, 0}, {0, 0, 0}}, {}, {2, 3}));
+  const Shape shape = beside(even, slow, 1e-3);
+  EXPECT_EQ(counts_of(shape), (Counts{{1, 6}, {2, 1}}));
+  EXPECT_LT(largest_gap(shape), 1.5e-8);
+  EXPECT_LT(largest_gap(value_of(joined_edges(shape, 1e-3))), 1.5e-8);
+}
+
+TEST(EdgeMatching, ParametersOfThePairAreWithinTheGap) {
+  // A cubic wave against the same, moved by 1e-4 across, at another pace.
+  const std::vector<Vec3> wave{{0, 0, 0}, {1, 1, 0}, {2, -1, 0}, {3, 0, 0}};
+  const Curve first = value_of(Curve::bezier(wave));
+  const Curve quick =
+      value_of(Curve::bezier(std::vector<Vec3>{{0, 1e-4, 0}, {1, 1 + 1e-4, 0}, {2, -1 + 1e-4, 0}, {3, 1e-4, 0}},
+                             std::vector<double>{1, 1.7, 1.7 * 1.7, 1.7 * 1.7 * 1.7}));
+  const Shape shape = beside(first, quick, 1e-3);
+  EXPECT_EQ(counts_of(shape), (Counts{{1, 6}, {2, 1}}));
+  EXPECT_LT(largest_gap(shape), 1.3e-4);
+}
+
+TEST(EdgeMatching, CirclesWithDifferentStartsMeet) {
+  const Axis axis;
+  const BSplineSurface wall = value_of(make_nurbs_cylinder(axis, 1, 1));
+  std::vector<ModelSurface> faces{{"wall", wall}};
+  for (const double angle : {0.0, 1.0, 3.2}) {
+    faces.erase(faces.begin() + 1, faces.end());
+    for (const double z : {0.0, 1.0}) {
+      Axis centre;
+      centre.origin = {0.5, 0.5, 0};
+      const Curve circle = value_of(make_nurbs_circle(centre, 0.25));
+      std::vector<Vec3> points(circle.points().begin(), circle.points().end());
+      const Affine turn = Affine::rotated({0, 0, 1}, z == 0 ? angle : -angle);
+      for (Vec3& p : points) p = turn.point(p - centre.origin) + centre.origin;
+      const TrimLoop loop{{value_of(Curve::nurbs(2, points, circle.weights(), circle.knots()))}, false, {}};
+      ModelSurface disc = quad({-2, -2, z}, {2, -2, z}, {2, 2, z}, {-2, 2, z});
+      disc.trims = std::vector<TrimLoop>{loop};
+      faces.push_back(disc);
+    }
+    const Shape shape = joined(faces, 1e-4);
+    EXPECT_EQ(counts_of(shape), angle == 0 ? (Counts{{2, 3}}) : (Counts{{2, 5}})) << angle;
+    EXPECT_EQ(shape.solid_count, 1u);
+    EXPECT_LT(largest_gap(shape), 3e-8) << angle;
+  }
+}
+
+TEST(EdgeMatching, SeamsAndPolesOfClosedSurfaces) {
+  const Shape ball = joined({{"ball", value_of(make_nurbs_sphere({}, 2))}}, 1e-3);
+  EXPECT_EQ(counts_of(ball), (Counts{{0, 2}, {2, 1}}));
+  EXPECT_EQ(ball.vertices.size(), 2u);
+  EXPECT_EQ(ball.solid_count, 1u);
+  const Shape ring = joined({{"ring", value_of(make_nurbs_torus({}, 3, 1))}}, 1e-3);
+  EXPECT_EQ(counts_of(ring), (Counts{{2, 2}}));
+  EXPECT_EQ(ring.vertices.size(), 1u);
+  EXPECT_EQ(ring.solid_count, 1u);
+  EXPECT_LT(largest_gap(ring), 1e-12);
+  // A quadric's loops are in its own parameters.
+  const Quadric sphere = value_of(Quadric::make({.a = 1, .b = 1, .c = 1, .k = -4}));
+  const double turn = std::numbers::pi;
+  std::vector<ModelSurface> halves;
+  for (const auto& [from, to] : {std::pair(-turn / 2, 0.3), std::pair(0.3, turn / 2)})
+    halves.push_back({"half", value_of(QuadricPiece::make(sphere, {0, 2 * turn, from, to}))});
+  const Shape quadrics = joined(halves, 1e-3);
+  EXPECT_EQ(counts_of(quadrics), (Counts{{0, 2}, {2, 3}}));
+  EXPECT_EQ(quadrics.solid_count, 1u);
+  EXPECT_LT(largest_gap(quadrics), 1e-12);
+}
+
+TEST(EdgeMatching, NarrowSlitsAreClosed) {
+  ModelSurface face = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  const auto with_slit = [&](double width) {
+    face.trims = std::vector<TrimLoop>{
+        polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
+        polygon({{0.2, 0.5, 0}, {0.8, 0.5, 0}, {0.8, 0.5 + width, 0}, {0.2, 0.5 + width, 0}}, true)};
+    return joined({face}, 1e-3);
+  };
+  EXPECT_EQ(counts_of(with_slit(1e-2)), (Counts{{1, 8}}));
+  EXPECT_EQ(counts_of(with_slit(0.9e-3)), (Counts{{0, 2}, {1, 4}, {2, 1}}));
+  EXPECT_EQ(counts_of(with_slit(1e-9)), (Counts{{0, 2}, {1, 4}, {2, 1}}));
+}
+
+TEST(EdgeMatching, ThreeFacesMeetInOneEdge) {
+  const auto fan = [](double gap) {
+    return joined({quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}), quad({1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}),
+                   quad({1, 0, gap}, {1, 0, 1}, {1, 1, 1}, {1, 1, gap})},
+                  1e-3);
+  };
+  EXPECT_EQ(counts_of(fan(0)), (Counts{{1, 9}, {3, 1}}));
+  EXPECT_EQ(counts_of(fan(1e-4)), (Counts{{1, 9}, {3, 1}}));
+  EXPECT_EQ(counts_of(fan(0.5e-3)), (Counts{{1, 10}, {2, 1}}));  // the two that meet better
+}
+
+TEST(EdgeMatching, EdgesShorterThanTheDistance) {
+  // The square in the middle of three is narrower than the distance: it becomes a line.
+  const Shape shape = joined(one_against_three(0.5, 0.5003), 1e-3);
+  EXPECT_EQ(counts_of(shape), (Counts{{0, 1}, {1, 8}, {2, 4}}));
+  // Short edges that faces share stay edges.
+  EXPECT_EQ(counts_of(joined(cube(1e-4), 1e-3)), (Counts{{2, 12}}));
+  EXPECT_EQ(counts_of(joined(cube(1e-6), 1e-3)), (Counts{{0, 24}}));
 }
 
 }  // namespace

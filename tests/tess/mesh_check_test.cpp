@@ -94,9 +94,9 @@ TEST(MeshCheck, DegenerateTrianglesAndTheirEdges) {
   mesh.positions.insert(mesh.positions.end(), {0, 0, 0, 0.5, 0, 0, 2, 0, 0});
   mesh.indices.insert(mesh.indices.end(), {0, 0, 1});  // one vertex twice
   mesh.indices.insert(mesh.indices.end(), {0, 4, 1});  // two vertices in one place
-  mesh.indices.insert(mesh.indices.end(), {0, 5, 6});  // on one line
+  mesh.indices.insert(mesh.indices.end(), {0, 5, 6, 6, 5, 0});  // on one line, both ways
   const MeshReport report = report_of(mesh);
-  EXPECT_EQ(report.degenerate_triangles, 3u);
+  EXPECT_EQ(report.degenerate_triangles, 4u);
   EXPECT_EQ(report.open_edges, 0u);
   EXPECT_TRUE(report.closed());
 }
@@ -108,6 +108,10 @@ TEST(MeshCheck, TJunctions) {
   mesh.indices = {0, 1, 2, 0, 2, 3, 1, 4, 6, 6, 4, 5, 6, 5, 2};
   EXPECT_EQ(report_of(mesh).t_junctions, 1u);
   EXPECT_EQ(report_of(mesh).open_edges, 9u);
+  mesh.indices.insert(mesh.indices.end(), {2, 1, 6});  // a line that closes the gap
+  EXPECT_EQ(report_of(mesh).t_junctions, 0u);
+  EXPECT_EQ(report_of(mesh).open_edges, 6u);
+  EXPECT_EQ(report_of(mesh).degenerate_triangles, 1u);
   mesh.positions[18] = 1.001f;  // a crack, seen as open edges
   EXPECT_EQ(report_of(mesh).t_junctions, 0u);
   mesh.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};

@@ -13,8 +13,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-Vec3 middle_of(const Box3& box) { return 0.5 * box.lower + 0.5 * box.upper; }
-
 class Closer {
  public:
   Closer(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions, std::span<CutPatch> cuts,
@@ -185,27 +183,35 @@ class Closer {
     for (const EdgePoint& point : points_.points)
       if (runs_.meet(point.edge) && !is_open_[point.edge]) meets[sets_->find(of_points_[point.first]).member] = 1;
     places_.assign(count_, none);
-    out_.members.reserve(static_cast<std::size_t>(std::ranges::count(is_used_, 1)));
-    const auto add = [&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
+    std::vector<std::uint32_t>& first = out_.first_members;
+    first.assign(1, 0);
+    const auto for_vertices = [&](auto visit) {
+      for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) {
+        const std::size_t inner = divisions_[patch].empty ? 0 : divisions_[patch].inner_count();
+        for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k)
+          if (is_used_[k]) visit(k, patch, static_cast<std::uint32_t>(inner) + k - bases_[patch]);
+      }
+      const std::span<const InsertedVertex> inserted = segments_.inserted();
+      for (std::uint32_t k = 0; k < inserted.size(); ++k)
+        if (resolved_[k] != none) visit(bases_.back() + k, inserted[k].patch, resolved_[k]);
+    };
+    for_vertices([&](std::uint32_t k, std::uint32_t, std::uint32_t) {
       const std::uint32_t root = sets_->find(k).member;
       if (!meets[root]) return;
-      if (places[root] == none) places[root] = out_.place_count++;
+      if (places[root] == none) places[root] = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
       places_[k] = places[root];
-      out_.members.push_back({patch, vertex, places_[k]});
-    };
-    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) {
-      const bool is_whole = !divisions_[patch].empty;
-      const std::size_t inner = is_whole ? divisions_[patch].inner_count() : 0;
-      for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k)
-        if (is_used_[k]) add(k, patch, static_cast<std::uint32_t>(inner) + k - bases_[patch]);
-    }
-    const std::span<const InsertedVertex> inserted = segments_.inserted();
-    for (std::uint32_t k = 0; k < inserted.size(); ++k)
-      if (resolved_[k] != none) add(bases_.back() + k, inserted[k].patch, resolved_[k]);
+      ++first[places_[k] + 1];
+    });
+    for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+    out_.members.resize(first.back());
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for_vertices([&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
+      if (places_[k] != none) out_.members[next[places_[k]]++] = {patch, vertex};
+    });
   }
 
   void measure() {
-    std::vector<Box3> boxes(out_.place_count);
+    std::vector<Box3> boxes(out_.first_members.size() - 1);
     for (std::uint32_t k = 0; k < count_; ++k)
       if (places_[k] != none) boxes[places_[k]].extend(own_[k]);
     out_.gaps.assign(set_.edges->edges.size(), 0);
@@ -214,7 +220,7 @@ class Closer {
       for (std::uint32_t k = 0; k < point.count; ++k) {
         const std::uint32_t vertex = of_points_[point.first + k];
         if (places_[vertex] == none) continue;
-        const double gap = length(own_[vertex] - middle_of(boxes[places_[vertex]]));
+        const double gap = length(own_[vertex] - boxes[places_[vertex]].centre());
         out_.gap = std::max(out_.gap, gap);
         out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
       }
@@ -252,16 +258,6 @@ class Closer {
 };
 
 }  // namespace
-
-std::vector<Vec3> middles(std::span<const ClosedEdges::Member> members, std::span<const Vec3> own,
-                          std::uint32_t place_count) {
-  std::vector<Box3> boxes(place_count);
-  for (std::size_t k = 0; k < members.size(); ++k) boxes[members[k].place].extend(own[k]);
-  std::vector<Vec3> at;
-  at.reserve(place_count);
-  for (const Box3& box : boxes) at.push_back(middle_of(box));
-  return at;
-}
 
 ClosedEdges close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
                         std::span<CutPatch> cuts, double max_gap, std::span<const std::uint8_t> is_joined,

@@ -18,27 +18,20 @@ namespace tessera::inline abi_0_1 {
 
 /// The vertices that faces share along edges.
 struct ClosedEdges {
-  /// A vertex of a patch, and the number of its place.
+  /// A vertex of a patch.
   struct Member {
     std::uint32_t patch, vertex;
-    std::uint32_t place;
   };
-  std::vector<Member> members;  ///< by growing patch
-  std::uint32_t place_count = 0;
-  std::vector<PatchEdit> edits;  ///< of whole patches, by growing patch
-  std::vector<float> gaps;       ///< by edge, rounded up: see Tessellation::edge_gaps()
-  double gap = 0;                ///< the largest
+  /// The vertices of one place after the other. A place is the middle of the box of its vertices' own positions.
+  std::vector<Member> members;
+  std::vector<std::uint32_t> first_members;  ///< by place, and their number at the end
+  std::vector<PatchEdit> edits;              ///< of whole patches, by growing patch
+  std::vector<float> gaps;                   ///< by edge, rounded up: see Tessellation::edge_gaps()
+  double gap = 0;                            ///< the largest
   /// Cut patches whose triangles are divided, by growing place among the cuts: their bounds no longer hold.
   std::vector<std::uint32_t> edited_cuts;
   std::uint32_t closed_segments = 0;  ///< segments of triangles that no shared border joins, but an edge does
 };
-
-/// The places of the members' vertices in space, relative to the set's origin. Each is the middle of the box of the
-/// points that the faces have there.
-///
-/// `locals`: by member, the parameters in its patch. `own`: by member, its own point.
-std::vector<Vec3> middles(std::span<const ClosedEdges::Member> members, std::span<const Vec3> own,
-                          std::uint32_t place_count);
 
 /// Finds the vertices of all edges, and inserts those that patches lack: into `cuts`, and as edits into others. Distances
 /// of cut patches are extended to their new triangles, by `chord` of the patch. Edges with gaps above `max_gap` stay open. `is_joined`: by 4 * patch + side, whether

@@ -1,7 +1,6 @@
 #include "tess/write/closed_vertices.h"
 
-#include <algorithm>
-#include <optional>
+#include <span>
 
 #include "parallel/parallel_for.h"
 #include "tess/trimmed/patch_points.h"
@@ -10,7 +9,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_per_task = 16, members_per_task = 512;
+constexpr std::size_t patches_per_task = 16, places_per_task = 512;
 
 class ClosedWriter {
  public:
@@ -42,37 +41,27 @@ class ClosedWriter {
     for (std::size_t k = 0; k < edit.added.size(); ++k) write(count + k, edit.added[k]);
   }
 
-  /// Finds the patches' own points of members [begin, end).
-  void evaluate(std::size_t begin, std::size_t end, std::vector<Vec3>& own) const {
-    std::optional<PatchPoints> points;
-    std::uint32_t patch = CutPatch::none;
-    for (std::size_t k = begin; k < end; ++k) {
-      const ClosedEdges::Member& member = closed_.members[k];
-      if (member.patch != patch) {
-        patch = member.patch;
-        points.emplace(set_.patches[patch], set_.origin);
-      }
-      own[k] = points->at(local(member));
+  /// Moves the vertices of a place to the middle of their box.
+  template <class T>
+  void move(std::uint32_t place, const View3<T>& positions) const {
+    const auto of_place =
+        std::span(closed_.members)
+            .subspan(closed_.first_members[place], closed_.first_members[place + 1] - closed_.first_members[place]);
+    const auto vertex = [&](const ClosedEdges::Member& member) {
+      return plan_.first_vertex(member.patch) + member.vertex;
+    };
+    Box3 box;
+    for (const ClosedEdges::Member& member : of_place) {
+      const std::size_t at = vertex(member);
+      box.extend({double(positions.at(at, 0)), double(positions.at(at, 1)), double(positions.at(at, 2))});
     }
-  }
-
-  void put(std::size_t vertex, const Vec3& p) const {
-    if (!out_.position.empty()) put_vector(out_.position, vertex, p);
-    if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
+    for (const ClosedEdges::Member& member : of_place) put_vector(positions, vertex(member), box.centre());
   }
 
  private:
-  ParameterPoint local(const ClosedEdges::Member& member) const {
-    const auto cut = std::ranges::lower_bound(plan_.cuts(), member.patch, {}, &CutPatch::patch);
-    if (cut != plan_.cuts().end() && cut->patch == member.patch) return cut->vertices[member.vertex];
-    const Division& division = plan_.division(member.patch);
-    const std::size_t own = division.vertex_count();
-    if (member.vertex >= own) {
-      const auto edit = std::ranges::lower_bound(closed_.edits, member.patch, {}, &PatchEdit::patch);
-      return edit->vertices[member.vertex - own];
-    }
-    const Division::Parameters at = division.parameters(member.vertex);
-    return {at.u, at.v};
+  void put(std::size_t vertex, const Vec3& p) const {
+    if (!out_.position.empty()) put_vector(out_.position, vertex, p);
+    if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
   }
 
   const PatchSet::Impl& set_;
@@ -92,13 +81,13 @@ Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, const 
     for (std::size_t k = begin; k < end; ++k) writer.write_edit(closed.edits[k]);
   };
   if (Status status = parallel_for(closed.edits.size(), patches_per_task, quiet, write); !status.ok()) return status;
-  std::vector<Vec3> own(closed.members.size());
-  const auto evaluate = [&](std::size_t begin, std::size_t end) { writer.evaluate(begin, end, own); };
-  if (Status status = parallel_for(own.size(), members_per_task, quiet, evaluate); !status.ok()) return status;
-  const std::vector<Vec3> at = middles(closed.members, own, closed.place_count);
-  for (const ClosedEdges::Member& member : closed.members)
-    writer.put(plan.first_vertex(member.patch) + member.vertex, at[member.place]);
-  return {};
+  const auto move = [&](std::size_t begin, std::size_t end) {
+    for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
+      if (!out.position.empty()) writer.move(place, out.position);
+      if (!out.position_f64.empty()) writer.move(place, out.position_f64);
+    }
+  };
+  return parallel_for(closed.first_members.size() - 1, places_per_task, quiet, move);
 }
 
 }  // namespace tessera::inline abi_0_1
