@@ -226,7 +226,8 @@ class Closer {
       }
     }
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
-      if (!is_open_[edge]) out_.closed_segments += points_.closed[edge];
+      out_.closed_segments += is_open_[edge] || !runs_.meet(edge) ? -std::int64_t{points_.counts[edge].more}
+                                                                  : std::int64_t{points_.counts[edge].own};
     for (const CutPatch& cut : cuts_)
       for (const CutPatch::LoopSegment& line : cut.loop_segments) out_.closed_segments += is_closed_gap(cut, line);
   }

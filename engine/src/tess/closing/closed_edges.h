@@ -30,7 +30,8 @@ struct ClosedEdges {
   double gap = 0;                            ///< the largest
   /// Cut patches whose triangles are divided, by growing place among the cuts: their bounds no longer hold.
   std::vector<std::uint32_t> edited_cuts;
-  std::uint32_t closed_segments = 0;  ///< segments of triangles that no shared border joins, but an edge does
+  /// By how much fewer segments of triangles lie on the boundary of the mesh.
+  std::int64_t closed_segments = 0;
 };
 
 /// Finds the vertices of all edges, and inserts those that patches lack: into `cuts`, and as edits into others. Distances

@@ -17,7 +17,7 @@ class Maker {
 
   EdgePoints run() {
     const std::size_t edges = runs_.edges().edges.size();
-    out_.closed.assign(edges, 0);
+    out_.counts.resize(edges);
     for (std::uint32_t edge = 0; edge < edges; ++edge) {
       segments_.clear();
       all_.append(edge, segments_);
@@ -50,15 +50,17 @@ class Maker {
     }
     if (segments_.front().run->use != segments_.back().run->use) {
       insert_missing();
-      for (const EdgeSegment& segment : segments_) out_.closed[id] += is_closed_here(segment);
     }
+    for (const EdgeSegment& segment : segments_) count(segment, out_.counts[id]);
     put(id, edge, same);
   }
 
-  bool is_closed_here(const EdgeSegment& segment) const {
+  void count(const EdgeSegment& segment, EdgePoints::Counts& counts) const {
     const EdgeRun& run = *segment.run;
-    return segment.start != segment.end &&
-           !(run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]);
+    if (segment.start == segment.end) return;
+    if (run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]) return;
+    const bool begins = segment.low.vertex == segment.start || segment.high.vertex == segment.start;
+    ++(begins ? counts.own : counts.more);
   }
 
   void sort_stops() {

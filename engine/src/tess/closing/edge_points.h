@@ -20,8 +20,12 @@ struct EdgePoint {
 struct EdgePoints {
   std::vector<EdgePoint> points;      ///< by edges and growing parameters
   std::vector<PatchVertex> vertices;  ///< of one point after the other
-  /// By edge: how many segments another face has triangles on, and had none on without this. 0 for one coedge.
-  std::vector<std::uint32_t> closed;
+  /// By edge: how many segments of boundaries lie on it that no other patch has triangles on without this, and how many
+  /// segments it gets beyond these, as it ends inside them.
+  struct Counts {
+    std::uint32_t own = 0, more = 0;
+  };
+  std::vector<Counts> counts;
 };
 
 /// Lists the points of all edges. Where an edge has several coedges, each gets vertices at the parameters of all:

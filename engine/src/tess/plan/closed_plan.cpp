@@ -46,7 +46,8 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
       excess = std::max(excess, bound_cut(room_of(edited, request, plan), edited, plan));
     }
     if (excess <= 1) {
-      plan.open_edges_ -= std::min(plan.open_edges_, closed.closed_segments);
+      plan.open_edges_ = static_cast<std::uint32_t>(
+          std::max(std::int64_t{0}, std::int64_t{plan.open_edges_} - closed.closed_segments));
       return {};
     }
     cut.cut_share *= 0.95 / excess;

@@ -53,7 +53,7 @@ class ClosedWriter {
     Box3 box;
     for (const ClosedEdges::Member& member : of_place) {
       const std::size_t at = vertex(member);
-      box.extend({double(positions.at(at, 0)), double(positions.at(at, 1)), double(positions.at(at, 2))});
+      box.extend(Vec3{double(positions.at(at, 0)), double(positions.at(at, 1)), double(positions.at(at, 2))});
     }
     for (const ClosedEdges::Member& member : of_place) put_vector(positions, vertex(member), box.centre());
   }
