@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <map>
+#include <numeric>
 #include <random>
 
 #include <tbb/global_control.h>
@@ -204,6 +203,40 @@ TEST(ClosedShape, BytesDoNotDependOnThreads) {
     return std::pair(mesh.positions, mesh.indices);
   };
   EXPECT_EQ(bytes(1), bytes(4));
+}
+
+/// Control points of all patches, mapped.
+TEST(ClosedShape, MeshesFollowEdits) {
+  PatchSet set = value_of(make_patch_set(joined(drilled_plate(), 1e-6)));
+  Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 1e-3}));
+  Mesh mesh = value_of(plan.allocate());
+  ASSERT_TRUE(plan.run(set, mesh.views()).ok());
+  double scale = 1;
+  const auto stretch = [&](double by) {
+    std::vector<std::uint32_t> patches(set.patch_count());
+    std::iota(patches.begin(), patches.end(), 0u);
+    std::vector<Vec3> points;
+    for (const std::uint32_t k : patches)
+      for (const Vec3& p : set.patch(k).points()) points.push_back({p.x, p.y, by * p.z});
+    scale *= by;
+    return value_of(plan.update(set, PatchEdits{patches, points}, mesh.views()));
+  };
+  const auto expect_stretched = [&] {
+    EXPECT_TRUE(value_of(check(mesh)).closed());
+    EXPECT_EQ(plan.open_edges(), 0u);
+    EXPECT_LE(plan.bound(), 1e-3);
+    const auto [volume, area] = volume_and_area(mesh);
+    EXPECT_NEAR(volume, scale * drilled_volume(), area * (plan.bound() + plan.gap()));
+  };
+  EXPECT_FALSE(stretch(1.01).topology);
+  expect_stretched();
+  // One face alone rises from the others: they stay joined, half-way.
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> lone{0};
+  for (const Vec3& p : set.patch(0).points()) points.push_back(p + Vec3{0, 0, 0.01});
+  EXPECT_FALSE(value_of(plan.update(set, PatchEdits{lone, points}, mesh.views())).topology);
+  EXPECT_TRUE(value_of(check(mesh)).closed());
+  EXPECT_NEAR(plan.gap(), 0.005, 1e-6);
 }
 
 TEST(ClosedShape, AnglesPixelsDoublesAndQuadsAreClosed) {

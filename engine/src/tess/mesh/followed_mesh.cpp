@@ -61,8 +61,7 @@ Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution)
 Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                       const Execution& execution) {
   PatchSet::Impl& inner = impl_of(set);
-  if (inner.trims)
-    return Status(StatusCode::unsupported, "meshes of patches that trimming loops cut cannot be updated");
+  if (inner.trims || plan_.closed()) return update_anew(set, edits, out, execution);
   if (Status status = start(set, edits, out, execution); !status.ok()) return status;
   CallProgress progress(execution, update_ends);
   // Edges and welds must be those of the plan: an update that finds edited patches has to find them anew.
@@ -95,6 +94,27 @@ Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, co
   revision_ = inner.revision;
   (void)progress.finish({});
   return change;
+}
+
+// Loops and edges of shapes tie patches to others far away, so everything is planned and written anew. Patches keep their
+// segments where these suffice, so small edits keep the triangles.
+Result<MeshChange> ProvenMesh::update_anew(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                                           const Execution& execution) {
+  PatchSet::Impl& inner = impl_of(set);
+  if (Status status = start(set, edits, out, execution); !status.ok()) return status;
+  {
+    const NotedEdits noted(inner, edits);
+    for (std::uint32_t block = 0; block < inner.lane_counts.size(); ++block)
+      if (edits_->count(block) > 0) pack_edits(inner, edits, *edits_, kernel::kernels(isa_), block);
+  }
+  const Result<std::unique_ptr<ProvenMesh>> next = make(set, options_, this, execution);
+  if (!next) return next.status();
+  const bool is_same = plan_.has_triangles_of((*next)->plan_);
+  const std::size_t changed = replace(**next);
+  revision_ = inner.revision;
+  if (is_same)
+    if (Status status = run(set, out, {.cancel = execution.cancel}); !status.ok()) return status;
+  return MeshChange{!is_same, is_same ? changed : std::max<std::size_t>(changed, 1)};
 }
 
 void ProvenMesh::touch_edited(const PatchSet::Impl& set) {

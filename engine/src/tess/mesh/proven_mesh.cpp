@@ -98,7 +98,8 @@ Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const 
   std::unique_ptr<ProvenMesh> mesh(
       new ProvenMesh(set, options, made->tolerance, std::move(made->plan), made->planner, *isa));
   if (Status status = mesh->join(impl_of(set), made->planner, progress.loops()); !status.ok()) return status;
-  if (before) mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->planner), mesh->of(impl_of(set)));
+  if (before && !impl_of(set).trims && !mesh->plan_.closed())
+    mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->planner), mesh->of(impl_of(set)));
   (void)progress.finish({});
   return mesh;
 }

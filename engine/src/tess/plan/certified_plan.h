@@ -50,6 +50,8 @@ class CertifiedPlan {
   std::span<const std::uint32_t> crossed() const { return rare_ ? rare_->crossed : std::span<const std::uint32_t>(); }
   /// The vertices that faces share along edges; null if the set has no edges.
   const ClosedEdges* closed() const { return rare_ && rare_->closed ? &*rare_->closed : nullptr; }
+  /// Whether another plan has the same triangles, by the numbers of their vertices.
+  bool has_triangles_of(const CertifiedPlan& other) const;
   /// Whether a set has the loops that the plan was made for.
   bool has_trims_of(const PatchSet::Impl& set) const {
     return rare_ ? rare_->trims == set.trims : set.trims == nullptr;

@@ -1,5 +1,6 @@
 // Lays out the vertices and triangles of a certified plan.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -46,6 +47,19 @@ void CertifiedPlan::lay_out() {
   first_vertex_[patches] = vertices;
   first_triangle_[patches] = triangles;
   first_quad_[patches] = quads;
+}
+
+bool CertifiedPlan::has_triangles_of(const CertifiedPlan& other) const {
+  const auto is_same_cut = [](const CutPatch& a, const CutPatch& b) {
+    return a.triangles == b.triangles && a.vertices.size() == b.vertices.size();
+  };
+  const auto is_same_edit = [](const PatchEdit& a, const PatchEdit& b) {
+    return a.patch == b.patch && a.changed == b.changed && a.added == b.added;
+  };
+  if (!std::ranges::equal(divisions_, other.divisions_) || !std::ranges::equal(cuts(), other.cuts(), is_same_cut))
+    return false;
+  if (!closed() || !other.closed()) return closed() == other.closed();
+  return std::ranges::equal(closed()->edits, other.closed()->edits, is_same_edit);
 }
 
 void CertifiedPlan::count_open_edges_beside_loops(const SharedEdges& edges) {
