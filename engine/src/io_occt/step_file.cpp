@@ -11,6 +11,8 @@
 #include <opencascade/StepRepr_RepresentationItem.hxx>
 #include <opencascade/StepShape_ShapeRepresentation.hxx>
 #include <opencascade/StepVisual_Colour.hxx>
+#include <opencascade/StepVisual_PresentationStyleAssignment.hxx>
+#include <opencascade/StepVisual_PresentationStyleByContext.hxx>
 #include <opencascade/StepVisual_StyledItem.hxx>
 #include <opencascade/TColStd_SequenceOfAsciiString.hxx>
 #include <opencascade/TCollection_HAsciiString.hxx>
@@ -51,6 +53,13 @@ void collect_names(const XSControl_Reader& reader, CadFile& file) {
   }
 }
 
+/// Whether a style is for an item in one context, such as one instance, and not wherever the item stands.
+bool is_of_context(const StepVisual_StyledItem& style) {
+  for (int k = 1; k <= style.NbStyles(); ++k)
+    if (style.StylesValue(k)->IsKind(STANDARD_TYPE(StepVisual_PresentationStyleByContext))) return true;
+  return false;
+}
+
 /// The colours of solids, shells and faces. Colours of single instances, and of edges, are left out.
 void collect_colours(const XSControl_Reader& reader, CadFile& file) {
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
@@ -60,9 +69,9 @@ void collect_colours(const XSControl_Reader& reader, CadFile& file) {
     const handle<StepVisual_StyledItem> style = styles.Style(k);
     handle<StepVisual_Colour> surface, border, curve, rendered;
     double transparency = 0;
-    bool is_instance = false;
-    if (style.IsNull() || !styles.GetColors(style, surface, border, curve, rendered, transparency, is_instance) ||
-        is_instance)
+    bool ignored = false;  // true also for styles without a context, in OpenCASCADE 7.6
+    if (style.IsNull() || is_of_context(*style) ||
+        !styles.GetColors(style, surface, border, curve, rendered, transparency, ignored))
       continue;
     Quantity_Color colour;
     const handle<StepVisual_Colour>& shown = rendered.IsNull() ? surface : rendered;
