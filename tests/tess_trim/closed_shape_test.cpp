@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -237,6 +238,52 @@ TEST(ClosedShape, MeshesFollowEdits) {
   EXPECT_FALSE(value_of(plan.update(set, PatchEdits{lone, points}, mesh.views())).topology);
   EXPECT_TRUE(value_of(check(mesh)).closed());
   EXPECT_NEAR(plan.gap(), 0.005, 1e-6);
+}
+
+/// By index alone, each side of a triangle belongs to two.
+TEST(ClosedShape, VerticesAreSharedByIndexOnRequest) {
+  const Shape shape = joined(drilled_plate(), 1e-6);
+  for (const std::optional<double> crease : {std::optional<double>(), std::optional<double>(4.0 / 5)}) {
+    const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3, .crease_angle = crease, .share_vertices = true});
+    expect_closed(made, "shared");
+    EXPECT_EQ(made.mesh.normals.empty(), !crease);
+    EXPECT_LT(made.mesh.vertex_count(), mesh_of(shape, {.tolerance = 1e-3}).mesh.vertex_count());
+    if (crease) continue;
+    EXPECT_EQ(made.mesh.vertex_count(), made.report.distinct_positions);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+    for (std::size_t t = 0; t < made.mesh.indices.size(); t += 3)
+      for (std::size_t c = 0; c < 3; ++c) ++sides[{made.mesh.indices[t + c], made.mesh.indices[t + (c + 1) % 3]}];
+    for (const auto& [side, count] : sides) {
+      EXPECT_EQ(count, 1);
+      EXPECT_TRUE(sides.count({side.second, side.first}));
+    }
+  }
+}
+
+/// A rounded edge: the normals of fillet and faces are one where they touch, those at sharp edges are not.
+TEST(ClosedShape, NormalsAreJoinedAtSmoothEdges) {
+  const Shape shape = joined(drilled_plate(), 1e-6);
+  const ShapeMesh sharp = mesh_of(shape, {.tolerance = 1e-3, .crease_angle = 0.1});
+  const ShapeMesh round = mesh_of(shape, {.tolerance = 1e-3, .crease_angle = std::numbers::pi});
+  std::map<std::array<float, 3>, std::vector<Vec3>> at_sharp, at_round;
+  const auto collect = [](const Mesh& mesh, auto& at) {
+    for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
+      const float *p = &mesh.positions[3 * k], *n = &mesh.normals[3 * k];
+      at[{p[0], p[1], p[2]}].push_back({n[0], n[1], n[2]});
+    }
+  };
+  collect(sharp.mesh, at_sharp), collect(round.mesh, at_round);
+  const auto spread = [](const std::vector<Vec3>& normals) {
+    double most = 0;
+    for (const Vec3& n : normals) most = std::max(most, length(n - normals.front()));
+    return most;
+  };
+  double least = 9, most = 0;
+  for (const auto& [place, normals] : at_sharp)
+    if (normals.size() > 2) least = std::min(least, spread(normals));
+  for (const auto& [place, normals] : at_round) most = std::max(most, spread(normals));
+  EXPECT_GT(least, 1.4);
+  EXPECT_EQ(most, 0);
 }
 
 TEST(ClosedShape, AnglesPixelsDoublesAndQuadsAreClosed) {

@@ -104,8 +104,6 @@ TEST(TrimmedFace, OfBadInputIsRefused) {
   for (const double tolerance : {0.0, -1.0, std::nan(""), 1e-12})
     EXPECT_EQ(Tessellation::make(face.set, {.tolerance = tolerance}).status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(Tessellation::make(face.set, {.rates = UniformRates{4, 4}}).status().code(), StatusCode::unsupported);
-  EXPECT_EQ(Tessellation::make(face.set, {.tolerance = 0.1, .share_vertices = true}).status().code(),
-            StatusCode::unsupported);
   Tessellation plan = value_of(Tessellation::make(face.set, {.tolerance = 0.1}));
   Mesh mesh = value_of(plan.allocate());
   EXPECT_FALSE(value_of(plan.update(face.set, PatchEdits{}, mesh.views())).topology);

@@ -221,14 +221,29 @@ struct MeshChange {
 ///
 /// - All bounds hold between the mesh and the kept part, in both directions; those of pixels and angles too.
 /// - With an angle, the edges along loops also turn by about that angle from one to the next; this is not proven.
-/// - Patches of one face share the vertices of their common sides; whole patches are as without loops. The vertices of
-///   two faces at a common edge need not meet.
-/// - Cut patches take positions from the set's double control points. They cannot share vertices by index, have no quads,
-///   and are not for uniform rates or updates.
+/// - Patches of one face share the vertices of their common sides; whole patches are as without loops.
+/// - Cut patches take positions from the set's double control points. They have no quads, and are not for uniform rates.
+///
+/// Edges of shapes (see Shape): all faces along an edge get vertices at the same parameters of the edge, and these have one
+/// position. So the mesh of a closed shell has no open edges at any tolerance, and an open shell's are its own borders.
+///
+/// - A vertex of several faces stands in the middle of the box of their points. How far it leaves a face is no part of
+///   bound(); see gap() and edge_gaps(). A file whose faces are farther apart than the tolerance is meshed, and closed.
+/// - Chords of trimmed faces end at common parameters. A whole patch keeps its even borders: where it needs a vertex
+///   more, one triangle becomes a fan.
+/// - Borders along such edges are joined by them, not by welding.
+/// - Not closed: edges that no second face uses, and those wider than TessellationOptions::max_gap.
+/// - Vertices that are shared by index: with cut patches or edges, all that are at one place when the topology is made,
+///   and have one normal if the mesh has any.
+/// - A crease angle joins normals vertex by vertex there, those of each vertex that lie within the angle.
 ///
 /// Layout of the vertices, patch after patch. Tolerances: the inner points `[iu - 1][iv - 1]`, then the border points
 /// counter-clockwise from (0,0), each corner once; shared points that belong to another patch are left out. Rates: all
 /// points `[iu][iv]`, so vertex (patch * (rates.u + 1) + iu) * (rates.v + 1) + iv. Cut patches: in no stated order.
+/// Vertices that edges add to a whole patch follow its own.
+///
+/// Edits: a set with cut patches or edges is planned and written anew by each update; loops stay where they are in the
+/// parameters. Its topology changes as rarely as that of others.
 ///
 /// Threads: any number of const calls; an update excludes every other call.
 ///
@@ -249,7 +264,7 @@ class Tessellation {
   /// - invalid_argument (more triangles or vertices than the limits, or more than 4096 segments along a parameter; the
   ///   message says how many triangles the mesh takes)
   /// - invalid_argument (max_triangles below what one cell per patch takes)
-  /// - unsupported (the set has no float Bernstein blocks; it has cut patches, and rates or shared vertices are wanted)
+  /// - unsupported (the set has no float Bernstein blocks; it has cut patches, and rates are wanted)
   /// - isa_unavailable, cancelled
   static Result<Tessellation> make(const PatchSet& set, const TessellationOptions& options,
                                    const Execution& execution = {});

@@ -10,6 +10,7 @@
 #include "kernel/table/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
+#include "tess/mesh/merged_mesh.h"
 #include "tess/plan/joins.h"
 #include "tess/write/closed_vertices.h"
 #include "tess/write/cut_vertices.h"
@@ -85,8 +86,6 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
 Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const TessellationOptions& options,
                                                      const ProvenMesh* before, const Execution& execution) {
   if (!set.blocks().float_bernstein) return no_float_blocks();
-  if (set.cut_count() > 0 && options.share_vertices)
-    return Status(StatusCode::unsupported, "patches that trimming loops cut cannot share vertices by index yet");
   const Result<Isa> isa = before ? before->isa_ : usable_isa(options.isa);
   if (!isa) return isa.status();
   const Result<double> tolerance = before ? before->tolerance_ : tolerance_of(options, set);
@@ -106,6 +105,12 @@ Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const 
 
 Result<std::unique_ptr<Tessellation::Impl>> make_proven_mesh(const PatchSet& set, const TessellationOptions& options,
                                                              const Execution& execution) {
+  const bool closes = impl_of(set).edges && options.close_edges;
+  if (options.share_vertices && (closes || set.cut_count() > 0)) {
+    TessellationOptions apart = options;
+    apart.share_vertices = false;
+    return MergedMesh::make(set, apart, execution);
+  }
   Result<std::unique_ptr<ProvenMesh>> made = ProvenMesh::make(set, options, nullptr, execution);
   if (!made) return made.status();
   return std::unique_ptr<Tessellation::Impl>(*std::move(made));
@@ -196,7 +201,7 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
     return status;
   if (Status status = write_cut(impl_of(set), plan_, options_.crease_angle, out, execution); !status.ok())
     return status;
-  return plan_.closed() ? write_closed(impl_of(set), plan_, out, execution) : Status();
+  return plan_.closed() ? write_closed(impl_of(set), plan_, options_.crease_angle, out, execution) : Status();
 }
 
 }  // namespace tessera::inline abi_0_1

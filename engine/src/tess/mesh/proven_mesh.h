@@ -28,6 +28,7 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
 
   const CertifiedPlan& plan() const { return plan_; }
   const MeshTables& tables() const { return *tables_; }
+  bool has_f64_positions() const { return plan_.has_f64_positions(); }
   double tolerance() const { return tolerance_; }  ///< the distance to keep, infinite if there is no limit
 
   Proof proof() const override;

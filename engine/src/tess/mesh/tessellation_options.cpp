@@ -55,7 +55,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   if (options.max_gap && !(*options.max_gap >= 0))
     return bad("the largest gap is " + text(*options.max_gap) + ", it must be at least 0");
   PlannerOptions planner;
-  planner.closes_edges = options.close_edges && !options.share_vertices;
+  planner.closes_edges = options.close_edges;
   planner.max_gap = options.max_gap.value_or(std::numeric_limits<double>::infinity());
   if (options.weld) {
     planner.weld.reach = weld;

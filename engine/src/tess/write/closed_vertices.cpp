@@ -1,5 +1,6 @@
 #include "tess/write/closed_vertices.h"
 
+#include <cmath>
 #include <span>
 
 #include "parallel/parallel_for.h"
@@ -13,8 +14,13 @@ constexpr std::size_t patches_per_task = 16, places_per_task = 512;
 
 class ClosedWriter {
  public:
-  ClosedWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshViews& out)
-      : set_(set), plan_(plan), closed_(*plan.closed()), out_(out) {}
+  ClosedWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
+               const MeshViews& out)
+      : set_(set),
+        plan_(plan),
+        closed_(*plan.closed()),
+        out_(out),
+        apart_(crease_angle ? 2 * std::sin(*crease_angle / 2) : -1) {}
 
   void write_edit(const PatchEdit& edit) const {
     const Division& division = plan_.division(edit.patch);
@@ -44,12 +50,7 @@ class ClosedWriter {
   /// Moves the vertices of a place to the middle of their box.
   template <class T>
   void move(std::uint32_t place, const View3<T>& positions) const {
-    const auto of_place =
-        std::span(closed_.members)
-            .subspan(closed_.first_members[place], closed_.first_members[place + 1] - closed_.first_members[place]);
-    const auto vertex = [&](const ClosedEdges::Member& member) {
-      return plan_.first_vertex(member.patch) + member.vertex;
-    };
+    const std::span<const ClosedEdges::Member> of_place = members(place);
     Box3 box;
     for (const ClosedEdges::Member& member : of_place) {
       const std::size_t at = vertex(member);
@@ -58,7 +59,29 @@ class ClosedWriter {
     for (const ClosedEdges::Member& member : of_place) put_vector(positions, vertex(member), box.centre());
   }
 
+  /// Gives the vertices of a place the normal of the first of them that is at most `apart_` away.
+  void join_normals(std::uint32_t place) const {
+    const std::span<const ClosedEdges::Member> of_place = members(place);
+    const auto normal = [&](std::size_t k) {
+      const std::size_t at = vertex(of_place[k]);
+      return Vec3{double(out_.normal.at(at, 0)), double(out_.normal.at(at, 1)), double(out_.normal.at(at, 2))};
+    };
+    for (std::size_t k = 1; k < of_place.size(); ++k)
+      for (std::size_t before = 0; before < k; ++before)
+        if (length(normal(k) - normal(before)) <= apart_) {
+          copy(out_.normal, vertex(of_place[before]), vertex(of_place[k]));
+          break;
+        }
+  }
+
  private:
+  std::span<const ClosedEdges::Member> members(std::uint32_t place) const {
+    const std::uint32_t first = closed_.first_members[place];
+    return std::span(closed_.members).subspan(first, closed_.first_members[place + 1] - first);
+  }
+  std::size_t vertex(const ClosedEdges::Member& member) const {
+    return plan_.first_vertex(member.patch) + member.vertex;
+  }
   void put(std::size_t vertex, const Vec3& p) const {
     if (!out_.position.empty()) put_vector(out_.position, vertex, p);
     if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
@@ -68,13 +91,14 @@ class ClosedWriter {
   const CertifiedPlan& plan_;
   const ClosedEdges& closed_;
   const MeshViews& out_;
+  double apart_;  ///< how far the tips of joined normals may lie apart
 };
 
 }  // namespace
 
-Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshViews& out,
-                    const Execution& execution) {
-  const ClosedWriter writer(set, plan, out);
+Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
+                    const MeshViews& out, const Execution& execution) {
+  const ClosedWriter writer(set, plan, crease_angle, out);
   const ClosedEdges& closed = *plan.closed();
   const Execution quiet{.cancel = execution.cancel};
   const auto write = [&](std::size_t begin, std::size_t end) {
@@ -85,6 +109,7 @@ Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, const 
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
       if (!out.position.empty()) writer.move(place, out.position);
       if (!out.position_f64.empty()) writer.move(place, out.position_f64);
+      if (!out.normal.empty() && crease_angle) writer.join_normals(place);
     }
   };
   return parallel_for(closed.first_members.size() - 1, places_per_task, quiet, move);

@@ -1,6 +1,8 @@
 #pragma once
 // Writes what closed edges add to a mesh.
 
+#include <optional>
+
 #include "tess/plan/certified_plan.h"
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
@@ -8,8 +10,8 @@
 namespace tessera::inline abi_0_1 {
 
 /// Writes vertices and triangles that are inserted into whole patches, then the common positions of all vertices along
-/// edges. All patches must have been written. Errors: cancelled.
-Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshViews& out,
-                    const Execution& execution);
+/// edges, and common normals where these lie within `crease_angle`. All patches must have been written. Errors: cancelled.
+Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
+                    const MeshViews& out, const Execution& execution);
 
 }  // namespace tessera::inline abi_0_1

@@ -1,0 +1,138 @@
+#include "tess/mesh/merged_mesh.h"
+
+#include <bit>
+#include <limits>
+
+#include "base/impl_access.h"
+#include "tess/edges/position_bits.h"
+#include "tess/write/mesh_views.h"
+#include "tess/write/vertex_views.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// Numbers the distinct vertices, by a hash table with open addressing of the first vertex at each place.
+template <class T>
+void number(const std::vector<T>& positions, const std::vector<float>& normals, std::vector<std::uint32_t>& numbers,
+            std::vector<std::uint32_t>& sources) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  const std::size_t count = positions.size() / 3;
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 1), none);
+  const auto is_same = [&](std::size_t a, std::size_t b) {
+    return position_bits(&positions[3 * a]) == position_bits(&positions[3 * b]) &&
+           (normals.empty() || position_bits(&normals[3 * a]) == position_bits(&normals[3 * b]));
+  };
+  numbers.resize(count);
+  sources.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    std::size_t slot = hash(position_bits(&positions[3 * k])) & (table.size() - 1);
+    while (table[slot] != none && !is_same(table[slot], k)) slot = (slot + 1) & (table.size() - 1);
+    if (table[slot] == none) {
+      table[slot] = static_cast<std::uint32_t>(k);
+      numbers[k] = static_cast<std::uint32_t>(sources.size());
+      sources.push_back(static_cast<std::uint32_t>(k));
+    } else {
+      numbers[k] = numbers[table[slot]];
+    }
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Tessellation::Impl>> MergedMesh::make(const PatchSet& set, const TessellationOptions& options,
+                                                             const Execution& execution) {
+  Result<std::unique_ptr<ProvenMesh>> own = ProvenMesh::make(set, options, nullptr, execution);
+  if (!own) return own.status();
+  std::unique_ptr<MergedMesh> mesh(new MergedMesh(*std::move(own), options.crease_angle.has_value()));
+  if (Status status = mesh->find(set, {.cancel = execution.cancel}); !status.ok()) return status;
+  return std::unique_ptr<Tessellation::Impl>(std::move(mesh));
+}
+
+Status MergedMesh::find(const PatchSet& set, const Execution& execution) {
+  Mesh all = own_->allocate();
+  if (!has_normals_) all.normals.clear();
+  if (Status status = own_->run(set, all.views(), execution); !status.ok()) return status;
+  if (all.positions_f64.empty())
+    number(all.positions, all.normals, numbers_, sources_);
+  else
+    number(all.positions_f64, all.normals, numbers_, sources_);
+  return {};
+}
+
+MeshCapacity MergedMesh::capacity() const {
+  MeshCapacity capacity = own_->capacity();
+  capacity.vertices = sources_.size();
+  return capacity;
+}
+
+Mesh MergedMesh::allocate() const {
+  Mesh mesh = own_->allocate();
+  for (std::vector<float>* values : {&mesh.positions, &mesh.normals})
+    if (!values->empty()) values->resize(3 * sources_.size());
+  if (!mesh.positions_f64.empty()) mesh.positions_f64.resize(3 * sources_.size());
+  if (!mesh.parameters.empty()) mesh.parameters.resize(2 * sources_.size());
+  if (!has_normals_) mesh.normals.clear();
+  return mesh;
+}
+
+Status MergedMesh::check(const MeshViews& out) const {
+  if (Status status = check_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
+  if (!out.normal.empty() && !has_normals_)
+    return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
+  return {};
+}
+
+MeshViews MergedMesh::views_for(const MeshViews& out, Mesh& own) const {
+  const std::size_t count = numbers_.size();
+  own.positions.resize(out.position.empty() ? 0 : 3 * count);
+  own.normals.resize(out.normal.empty() ? 0 : 3 * count);
+  own.parameters.resize(out.parameter.empty() ? 0 : 2 * count);
+  own.positions_f64.resize(out.position_f64.empty() ? 0 : 3 * count);
+  MeshViews views = own.views();
+  if (out.position.empty()) views.position = {};
+  views.patch = out.patch, views.indices = out.indices;
+  views.quads = out.quads, views.quad_patch = out.quad_patch;
+  return views;
+}
+
+void MergedMesh::gather(const MeshViews& own, const MeshViews& out) const {
+  const auto take = [](const auto& from, std::size_t source, const auto& to, std::size_t vertex, int components) {
+    for (int c = 0; c < components; ++c) to.at(vertex, c) = from.at(source, c);
+  };
+  for (std::size_t vertex = 0; vertex < sources_.size(); ++vertex) {
+    if (!out.position.empty()) take(own.position, sources_[vertex], out.position, vertex, 3);
+    if (!out.normal.empty()) take(own.normal, sources_[vertex], out.normal, vertex, 3);
+    if (!out.position_f64.empty()) take(own.position_f64, sources_[vertex], out.position_f64, vertex, 3);
+    if (!out.parameter.empty()) take(own.parameter, sources_[vertex], out.parameter, vertex, 2);
+  }
+}
+
+Status MergedMesh::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  if (Status status = check(out); !status.ok()) return status;
+  Mesh own;
+  const MeshViews views = views_for(out, own);
+  if (Status status = own_->run(set, views, execution); !status.ok()) return status;
+  gather(views, out);
+  const MeshCapacity size = capacity();
+  for (std::uint32_t& corner : out.indices.first(3 * size.triangles)) corner = numbers_[corner];
+  for (std::uint32_t& corner : out.quads.first(out.quads.empty() ? 0 : 4 * size.quads)) corner = numbers_[corner];
+  return {};
+}
+
+Result<MeshChange> MergedMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                                      const Execution& execution) {
+  if (Status status = check_updated_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
+  Mesh own = own_->allocate();
+  if (out.normal.empty()) own.normals.clear();
+  Result<MeshChange> change = own_->update(set, edits, own.views(), execution);
+  if (!change) return change;
+  if (change->topology) {
+    if (Status status = find(set, {.cancel = execution.cancel}); !status.ok()) return status;
+  } else {
+    gather(own.views(), out);
+  }
+  return change;
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,42 @@
+#pragma once
+// Shares the vertices of trimmed sets and of shapes by index.
+
+#include <memory>
+
+#include "tess/mesh/proven_mesh.h"
+#include "tess/mesh/tessellation_impl.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A mesh whose vertices at one place are one. With normals, those of one normal.
+///
+/// The places when the topology is made decide. A vertex has the parameters of the patch that comes first. Memory: 8
+/// bytes per vertex of the patches, and those vertices while it is written.
+class MergedMesh final : public Tessellation::Impl {
+ public:
+  /// Errors: those of ProvenMesh::make(), whose `options` must not share vertices.
+  static Result<std::unique_ptr<Tessellation::Impl>> make(const PatchSet& set, const TessellationOptions& options,
+                                                          const Execution& execution);
+
+  Proof proof() const override { return own_->proof(); }
+  MeshCapacity capacity() const override;
+  Mesh allocate() const override;
+  Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
+  Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                            const Execution& execution) override;
+
+ private:
+  MergedMesh(std::unique_ptr<ProvenMesh> own, bool has_normals) : own_(std::move(own)), has_normals_(has_normals) {}
+  Status find(const PatchSet& set, const Execution& execution);
+  Status check(const MeshViews& out) const;
+  /// Makes memory for the patches' own vertices; triangles go to `out` at once.
+  MeshViews views_for(const MeshViews& out, Mesh& own) const;
+  void gather(const MeshViews& own, const MeshViews& out) const;
+
+  std::unique_ptr<ProvenMesh> own_;
+  bool has_normals_;
+  std::vector<std::uint32_t> numbers_;  ///< by vertex of a patch: that of the merged mesh
+  std::vector<std::uint32_t> sources_;  ///< by vertex of the merged mesh: the first of a patch
+};
+
+}  // namespace tessera::inline abi_0_1
