@@ -1,8 +1,11 @@
 #include "topology_facts.h"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "console.h"
+#include "tessera/edge_matching.h"
 #include "tessera/topology.h"
 
 namespace tessera::cli {
@@ -41,6 +44,28 @@ Status add_gaps(const Model& model, std::size_t k, TopologyFacts& facts) {
   return {};
 }
 
+/// Whether some edge has one face, or a face names no edges.
+Result<bool> has_free_edges(const Shape& shape) {
+  const Result<EdgeUses> uses = edge_uses(shape);
+  if (!uses) return uses.status();
+  for (std::size_t k = 0; k < shape.edges.size(); ++k)
+    if ((*uses)[k].size() == 1 && !shape.edges[k].degenerate) return true;
+  for (const ShapeFace& face : shape.faces) {
+    const std::vector<TrimLoop>& loops = edge_loops(face);
+    const auto is_nameless = [](const TrimLoop& loop) { return loop.coedges.empty(); };
+    if (loops.empty() || std::any_of(loops.begin(), loops.end(), is_nameless)) return true;
+  }
+  return false;
+}
+
+/// The shapes of a model; its surfaces as one if it has none.
+std::vector<Shape> shapes_of(const Model& model) {
+  if (!model.shapes.empty()) return model.shapes;
+  std::vector<Shape> one(1);
+  for (const ModelSurface& surface : model.surfaces) one[0].faces.push_back({surface});
+  return one;
+}
+
 std::string name_of(const Model& model, std::size_t shape) {
   const std::string& name = *model.shapes[shape].name;
   return "shape " + std::to_string(shape) + (name.empty() ? "" : " (" + name + ")");
@@ -59,6 +84,33 @@ Result<TopologyFacts> count_topology(const Model& model) {
     if (Status status = add_gaps(model, k, facts); !status.ok()) return status;
   }
   return facts;
+}
+
+Result<std::optional<JoinedFacts>> count_joined(const Model& model) {
+  if (model.surfaces.size() > max_joined_faces) return std::optional<JoinedFacts>();
+  Model joined;
+  joined.shapes = shapes_of(model);
+  joined.instances = model.instances;
+  if (model.shapes.empty()) joined.instances.resize(1);
+  double largest = 0;
+  bool any = false;
+  for (Shape& shape : joined.shapes) {
+    const Result<bool> is_open = has_free_edges(shape);
+    if (!is_open) return is_open.status();
+    if (!*is_open) continue;
+    const Result<double> distance = joining_distance(shape);
+    if (!distance) return distance.status();
+    if (!(*distance > 0)) continue;
+    Result<Shape> made = joined_edges(shape, *distance);
+    if (!made) return made.status();
+    shape = *std::move(made);
+    largest = std::max(largest, *distance);
+    any = true;
+  }
+  if (!any) return std::optional<JoinedFacts>();
+  const Result<TopologyFacts> topology = count_topology(joined);
+  if (!topology) return topology.status();
+  return std::optional<JoinedFacts>({*topology, largest});
 }
 
 std::string topology_lines(const Model& model, const TopologyFacts& facts) {
@@ -89,6 +141,30 @@ Json topology_json(const Model& model, const TopologyFacts& facts) {
           {"largest_gap", facts.gap},
           {"largest_gap_shape", facts.gap > 0 ? Json(*model.shapes[facts.gap_shape].name) : Json()},
           {"gap_samples", gap_samples}};
+}
+
+std::string joined_line(const std::optional<JoinedFacts>& facts) {
+  if (!facts) return {};
+  const TopologyFacts& t = facts->topology;
+  return "\n  if joined        " + counted(t.edges, "edge") + ": " + std::to_string(t.two) + " of two faces, " +
+         std::to_string(t.one) + " of one, " + std::to_string(t.more) +
+         " of more; shells: " + std::to_string(t.closed_shells) + " closed, " + std::to_string(t.open_shells) +
+         " open; within " + readable(facts->distance, 3) + ", largest gap " + readable(t.gap, 3);
+}
+
+Json joined_json(const std::optional<JoinedFacts>& facts) {
+  if (!facts) return {};
+  const TopologyFacts& t = facts->topology;
+  return {{"distance", facts->distance},
+          {"closed_shells", t.closed_shells},
+          {"open_shells", t.open_shells},
+          {"vertices", t.vertices},
+          {"edges", t.edges},
+          {"edges_of_one_face", t.one},
+          {"edges_of_two_faces", t.two},
+          {"edges_of_more_faces", t.more},
+          {"degenerate_edges", t.points},
+          {"largest_gap", t.gap}};
 }
 
 std::string unit_line(const Model& model) {

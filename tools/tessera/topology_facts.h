@@ -25,9 +25,25 @@ inline constexpr int gap_samples = 65;  ///< of each edge
 /// Counts. Errors: those of edge_gaps().
 Result<TopologyFacts> count_topology(const Model& model);
 
+/// What becomes of a model whose edges joined_edges() joins.
+struct JoinedFacts {
+  TopologyFacts topology;
+  double distance = 0;  ///< within which they are joined, the largest of all shapes
+};
+inline constexpr std::size_t max_joined_faces = 20000;
+
+/// Joins edges within joining_distance() and counts. Empty where nothing is to be joined: all edges have two faces, or
+/// there are more than max_joined_faces. Errors: those of joined_edges().
+Result<std::optional<JoinedFacts>> count_joined(const Model& model);
+
 /// Lines of `info`; empty if the model has no shapes.
 std::string topology_lines(const Model& model, const TopologyFacts& facts);
 Json topology_json(const Model& model, const TopologyFacts& facts);
+
+/// A line of `info`; empty without facts.
+std::string joined_line(const std::optional<JoinedFacts>& facts);
+/// Null without facts.
+Json joined_json(const std::optional<JoinedFacts>& facts);
 
 /// "unit   mm (in the file: INCH)"; empty if no unit is stated.
 std::string unit_line(const Model& model);

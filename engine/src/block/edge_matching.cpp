@@ -92,6 +92,27 @@ Result<Shape> joined_edges(const Shape& given, double distance) {
   });
 }
 
+Result<double> joining_distance(const Shape& given) {
+  return guarded([&]() -> Result<double> {
+    constexpr double share = 1e-4;
+    constexpr int steps = 4;
+    Shape shape = given;
+    if (Status status = name_all_edges(shape, 0); !status.ok()) return status;
+    Box3 box;
+    for (std::size_t k = 0; k < shape.faces.size(); ++k)
+      for (const TrimLoop& loop : edge_loops(shape.faces[k]))
+        for (const Curve& curve : loop.curves)
+          for (int step = 0; step <= steps; ++step) {
+            const double x = static_cast<double>(step) / steps;
+            const Result<FacePoint> point =
+                face_point(shape.faces[k], curve, (1 - x) * curve.domain().from + x * curve.domain().to);
+            if (!point) return in_face(shape, k, point.status());
+            box.extend(point->position);
+          }
+    return share * box.diagonal();
+  });
+}
+
 Result<Shape> joined_shape(std::span<const ModelSurface> surfaces, double distance) {
   return guarded([&]() -> Result<Shape> {
     Shape shape;
