@@ -17,8 +17,10 @@ namespace {
 /// piece is monotone.
 double place_on(const TrimPiece& piece, bool along_u, double value) {
   const double from = along_of(piece.start(), along_u), to = along_of(piece.end(), along_u);
-  if (piece.curve.degree() == 1 && piece.curve.weights.empty())
-    return std::clamp((value - from) / (to - from), 0.0, 1.0);
+  if (piece.curve.degree() == 1) {
+    const double before = piece.curve.weight(0) * (value - from), after = piece.curve.weight(1) * (to - value);
+    return std::clamp(before / (before + after), 0.0, 1.0);
+  }
   const auto off = [&](double x) { return along_of(relative_point(piece.curve, {value, value}, x), along_u); };
   double a = 0, b = 1, at_a = from - value, at_b = to - value, x = 0;
   if (at_a == 0 || at_b == 0) return at_a == 0 ? 0 : 1;

@@ -244,15 +244,6 @@ double CertifiedPlanner::local_distance(std::size_t patch, PatchSegments segment
   return tessera::local_distance(set_->patches[patch], segments);
 }
 
-std::string CertifiedPlanner::wanted(double tolerance) const {
-  std::string said;
-  const auto add = [&said](const std::string& more) { said += (said.empty() ? "" : " with ") + more; };
-  if (std::isfinite(tolerance)) add("the tolerance " + text(tolerance));
-  if (options_.angle) add("the angle " + text(*options_.angle));
-  if (options_.camera) add("the tolerance of " + text(options_.pixels) + " pixels");
-  return said;
-}
-
 ProvenSegments CertifiedPlanner::keep_by_distance(std::size_t patch, double distance, const KeptSegments& kept,
                                                   const ChordBlocks::Products* products,
                                                   const ProvenSegments& best) const {

@@ -128,4 +128,13 @@ Status CertifiedPlanner::refusal(Failure failure, std::size_t patch, const Reque
                  patch);
 }
 
+std::string CertifiedPlanner::wanted(double tolerance) const {
+  std::string said;
+  const auto add = [&said](const std::string& more) { said += (said.empty() ? "" : " with ") + more; };
+  if (std::isfinite(tolerance)) add("the tolerance " + text(tolerance));
+  if (options_.angle) add("the angle " + text(*options_.angle));
+  if (options_.camera) add("the tolerance of " + text(options_.pixels) + " pixels");
+  return said;
+}
+
 }  // namespace tessera::inline abi_0_1
