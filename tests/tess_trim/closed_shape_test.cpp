@@ -157,6 +157,55 @@ TEST(ClosedShape, FacesTurnedInsideOutAreClosedToo) {
   EXPECT_GT(made.report.inconsistent_edges, 0u);
 }
 
+TEST(ClosedShape, LoopsWithoutCoedgesStayOpen) {
+  Shape shape = joined(drilled_plate(), 1e-6);
+  std::vector<TrimLoop> loops = *shape.faces[0].trims;
+  for (TrimLoop& loop : loops) loop.coedges.clear();
+  shape.faces[0].trims = std::move(loops);
+  const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3, .weld = 0});
+  EXPECT_GT(made.open_edges, 30u);
+  EXPECT_EQ(made.report.non_finite_vertices, 0u);
+}
+
+/// Edges may be those of other places altogether: then gaps are as large as the plate, and the mesh is closed all the same.
+TEST(ClosedShape, WrongCoedgesMakeGapsAndNoHoles) {
+  const Shape exact = joined(drilled_plate(), 1e-6);
+  std::mt19937_64 random(11);
+  for (int round = 0; round < 60; ++round) {
+    Shape shape = exact;
+    ShapeFace& face = shape.faces[random() % 7];
+    const bool is_trimmed = !face.trims->empty();
+    std::vector<TrimLoop> loops = is_trimmed ? *face.trims : *face.outline;
+    TrimLoop& loop = loops[random() % loops.size()];
+    const std::size_t count = loop.coedges.size();
+    const std::size_t a = random() % count, b = random() % count;
+    switch (round % 3) {
+      case 0:
+        std::swap(loop.coedges[a], loop.coedges[b]);
+        break;
+      case 1:
+        loop.coedges[a].reversed = !loop.coedges[a].reversed;
+        break;
+      default:
+        loop.coedges[a].edge = static_cast<std::uint32_t>(random() % shape.edges.size());
+        break;
+    }
+    (is_trimmed ? face.trims : face.outline) = std::move(loops);
+    const PatchSet set = value_of(make_patch_set(shape));
+    const Result<Tessellation> plan = Tessellation::make(set, {.tolerance = 0.01});
+    ASSERT_TRUE(plan.ok()) << round << ' ' << plan.status().message();
+    Mesh mesh = value_of(plan->allocate());
+    ASSERT_TRUE(plan->run(set, mesh.views()).ok());
+    const MeshReport report = value_of(check(mesh));
+    EXPECT_EQ(report.non_finite_vertices, 0u) << round;
+    EXPECT_LE(plan->bound(), 0.01) << round;
+    EXPECT_LT(plan->gap(), 6) << round;
+    if (round % 3 < 2) {
+      EXPECT_EQ(plan->open_edges(), 0u) << round;
+    }
+  }
+}
+
 /// A half ball on a disc: a seam, a pole, and an edge of the ball's half against the disc's circle.
 TEST(ClosedShape, SeamsAndPolesAreClosed) {
   const Curve arc = value_of(

@@ -244,7 +244,7 @@ class ModelPatches {
       if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
       if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
       const std::size_t places = grid.patches().size();
-      if (!trims || (*trims)->region.is_whole() || !is_trimmed) {
+      if (!trims || (*trims)->region.is_whole()) {
         all_.add(k, std::move(grid));
       } else {
         all_.add_kept(k, grid, **trims);

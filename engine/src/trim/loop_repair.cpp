@@ -187,6 +187,9 @@ class LoopRepair {
     };
     std::vector<TrimPiece>& pieces = made_.pieces;
     if (!d.axis.periodic && std::none_of(pieces.begin(), pieces.end(), is_outside)) return;
+    std::array<std::vector<TrimPiece>, 2> along;  // pieces on the sides, which close the rest where they can
+    for (const TrimPiece& piece : pieces)
+      if (on_side(piece, d.axis, d.x)) along[piece.start().*d.x == d.axis.to()].push_back(piece);
     std::erase_if(pieces, [&](const TrimPiece& piece) { return is_outside(piece) || on_side(piece, d.axis, d.x); });
     const std::vector<ParameterPoint> odd = odd_ends(pieces);
     const double sides[] = {d.axis.from(), d.axis.to()};
@@ -199,7 +202,22 @@ class LoopRepair {
     if (heights[0].size() % 2 != 0 && heights[1].size() % 2 != 0) close_at_far_side(d, towards_upper, heights);
     for (std::size_t side = 0; side < 2; ++side)
       for (std::size_t k = 0; k + 1 < heights[side].size(); k += 2)
-        append_line(d.point(sides[side], heights[side][k]), d.point(sides[side], heights[side][k + 1]));
+        close_along(d, sides[side], heights[side][k], heights[side][k + 1], along[side]);
+  }
+
+  /// Closes a part of a side: by the pieces that lie there, and by lines between them.
+  void close_along(const Direction& d, double side, double from, double to, std::vector<TrimPiece>& along) {
+    const auto lower = [&](const TrimPiece& piece) { return std::min(piece.start().*d.y, piece.end().*d.y); };
+    std::ranges::sort(along, {}, lower);
+    double at = from;
+    for (const TrimPiece& piece : along) {
+      const double end = std::max(piece.start().*d.y, piece.end().*d.y);
+      if (lower(piece) < at || end > to) continue;
+      append_line(d.point(side, at), d.point(side, lower(piece)));
+      made_.pieces.push_back(piece);
+      at = end;
+    }
+    append_line(d.point(side, at), d.point(side, to));
   }
 
   /// Adds the ends of a side to the heights at which it enters and leaves the loops, where it begins or ends within.

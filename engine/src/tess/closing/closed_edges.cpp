@@ -7,7 +7,7 @@
 
 #include "tess/bounds/rounded_up.h"
 #include "tess/closing/edge_points.h"
-#include "tess/edges/union_find.h"
+#include "base/union_find.h"
 #include "tess/trimmed/patch_points.h"
 
 namespace tessera::inline abi_0_1 {

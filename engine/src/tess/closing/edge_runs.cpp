@@ -6,6 +6,7 @@
 
 #include "base/impl_access.h"
 #include "block/coedge_parameter.h"
+#include "block/patch_trims.h"
 #include "tess/trimmed/cut_patch.h"
 #include "tess/trimmed/patch_sides.h"
 #include "trim/trim_region_impl.h"
@@ -86,7 +87,7 @@ ParameterPoint point_at(std::span<const TrimPiece> pieces, double t) {
 }
 
 EdgeRuns::EdgeRuns(const PatchSet::Impl& set) : edges_(set.edges.get()) {
-  for (std::uint32_t face = 0; face < edges_->faces.size(); ++face) add_face(face);
+  for (std::uint32_t face = 0; face < edges_->faces.size(); ++face) add_face(set, face);
   sort();
 }
 
@@ -110,7 +111,7 @@ double EdgeRuns::to_curve(std::uint32_t face, const TrimPiece& piece, double s) 
   return curve_parameter(loop.coedges[piece.curve_index], loop.curves[piece.curve_index], s);
 }
 
-void EdgeRuns::add_face(std::uint32_t face) {
+void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
   const PatchEdges::Face& of = edges_->faces[face];
   const TrimRegion::Impl& region = impl_of(of.region);
   const std::vector<TrimPiece>& pieces = region.pieces;
@@ -137,7 +138,8 @@ void EdgeRuns::add_face(std::uint32_t face) {
       const std::size_t a = cell_of(region.lines.u.lines, (at.start().u + at.end().u) / 2);
       run.patch = of.patches[a * region.count_v() + cell_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
     }
-    if (run.patch != no_id) runs_.push_back(run);
+    const bool is_cut = set.trims && run.patch != no_id && set.trims->is_cut[run.patch];
+    if (run.is_side ? run.patch != no_id : is_cut) runs_.push_back(run);
   }
 }
 
@@ -183,6 +185,10 @@ void EdgeRuns::sort() {
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (const EdgeRun& run : runs_) sorted[next[run.edge]++] = run;
   runs_ = std::move(sorted);
+  // Pieces along the sides of a periodic surface come after all others of its loops.
+  for (std::size_t edge = 0; edge + 1 < first_.size(); ++edge)
+    std::ranges::stable_sort(std::span(runs_).subspan(first_[edge], first_[edge + 1] - first_[edge]), {},
+                             &EdgeRun::use);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -47,7 +47,7 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   const PatchEdges& edges() const { return *edges_; }
 
  private:
-  void add_face(std::uint32_t face);
+  void add_face(const PatchSet::Impl& set, std::uint32_t face);
   /// Finds the patch and the side of a run along a line between patches.
   void find_side(EdgeRun & run, bool along_u) const;
   void sort();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tess/edges/side_curve.h"
-#include "tess/edges/union_find.h"
+#include "base/union_find.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tess/edges/side_curve.h"
-#include "tess/edges/union_find.h"
+#include "base/union_find.h"
 #include "tess/plan/ring_vertices.h"
 
 namespace tessera::inline abi_0_1 {
