@@ -5,9 +5,9 @@
 #include <optional>
 #include <tuple>
 
+#include "base/union_find.h"
 #include "tess/bounds/rounded_up.h"
 #include "tess/closing/edge_points.h"
-#include "base/union_find.h"
 #include "tess/trimmed/patch_points.h"
 
 namespace tessera::inline abi_0_1 {
@@ -103,10 +103,13 @@ class Closer {
   /// Finds the edges along which faces are farther apart than `max_gap`.
   void find_open(double max_gap) {
     is_open_.assign(set_.edges->edges.size(), 0);
+    widths_.assign(is_open_.size(), 0);
     for (const EdgePoint& point : points_.points) {
       Box3 box;
       for (std::uint32_t k = 0; k < point.count; ++k) box.extend(own_[of_points_[point.first + k]]);
-      if (box.diagonal() > max_gap) is_open_[point.edge] = 1;
+      const double width = box.diagonal();
+      if (width > max_gap) is_open_[point.edge] = 1;
+      widths_[point.edge] = std::max(widths_[point.edge], width);
     }
   }
 
@@ -225,6 +228,9 @@ class Closer {
         out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
       }
     }
+    for (const Box3& box : boxes) out_.places.push_back(box.centre());
+    for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
+      if (is_open_[edge]) out_.gaps[edge] = rounded_up(widths_[edge] / 2);
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
       out_.closed_segments += is_open_[edge] || !runs_.meet(edge) ? -std::int64_t{points_.counts[edge].more}
                                                                   : std::int64_t{points_.counts[edge].own};
@@ -253,6 +259,7 @@ class Closer {
   std::vector<std::array<std::uint32_t, 2>> same_;
   std::vector<Vec3> own_;
   std::vector<std::uint8_t> is_open_;
+  std::vector<double> widths_;  ///< by edge: the largest distance of the faces' points
   std::optional<UnionFind> sets_;
   std::vector<std::uint32_t> resolved_, places_;
   ClosedEdges out_;

@@ -22,9 +22,10 @@ struct ClosedEdges {
   struct Member {
     std::uint32_t patch, vertex;
   };
-  /// The vertices of one place after the other. A place is the middle of the box of its vertices' own positions.
+  /// Vertices grouped by place. All vertices of a place get one position: the centre of the box of their own.
   std::vector<Member> members;
   std::vector<std::uint32_t> first_members;  ///< by place, and their number at the end
+  std::vector<Vec3> places;                  ///< positions relative to the set's origin
   std::vector<PatchEdit> edits;              ///< of whole patches, by growing patch
   std::vector<float> gaps;                   ///< by edge, rounded up: see Tessellation::edge_gaps()
   double gap = 0;                            ///< the largest

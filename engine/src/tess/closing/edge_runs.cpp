@@ -116,6 +116,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
   const TrimRegion::Impl& region = impl_of(of.region);
   const std::vector<TrimPiece>& pieces = region.pieces;
   std::vector<std::uint32_t> first_uses;
+  std::optional<FaceSides> sides;
   for (const TrimLoop& loop : *of.loops) {
     first_uses.push_back(next_use_);
     next_use_ += static_cast<std::uint32_t>(loop.coedges.size());
@@ -133,7 +134,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
     run.edge = of.first_edge + coedge->edge;
     run.use = first_uses[at.loop] + at.curve_index;
     if (along != Along::none) {
-      find_side(run, along == Along::u);
+      find_side(run, along == Along::u, sides);
     } else {
       const std::size_t a = cell_of(region.lines.u.lines, (at.start().u + at.end().u) / 2);
       run.patch = of.patches[a * region.count_v() + cell_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
@@ -144,7 +145,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
 }
 
 // A piece along a line has the face on one side of it. If both patches there are in the set, loops cut at least one.
-void EdgeRuns::find_side(EdgeRun& run, bool along_u) const {
+void EdgeRuns::find_side(EdgeRun& run, bool along_u, std::optional<FaceSides>& sides) const {
   const PatchEdges::Face& face = edges_->faces[run.face];
   const TrimRegion::Impl& region = impl_of(face.region);
   const TrimPiece& at = region.pieces[run.first];
@@ -161,8 +162,8 @@ void EdgeRuns::find_side(EdgeRun& run, bool along_u) const {
   const std::uint32_t below = line > 0 ? patch_at(line - 1) : no_id, above = patch_at(line);
   bool is_above = below == no_id;
   if (below != no_id && above != no_id) {
-    const FaceSides sides(face.region);
-    for (const SidePoint& point : (along_u ? sides.v : sides.u).points(line, cell, Segments(1)))
+    if (!sides) sides.emplace(face.region);
+    for (const SidePoint& point : (along_u ? sides->v : sides->u).points(line, cell, Segments(1)))
       if (point.at <= middle) is_above = point.above;
   }
   run.is_side = true;

@@ -2,6 +2,7 @@
 // The runs of faces' loops along the edges of shapes, patch by patch.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "trim/trim_piece.h"
 
 namespace tessera::inline abi_0_1 {
+
+struct FaceSides;
 
 /// Pieces of a loop that follow each other along one edge and within one patch: along one of its sides, or through its
 /// inside.
@@ -48,8 +51,8 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
 
  private:
   void add_face(const PatchSet::Impl& set, std::uint32_t face);
-  /// Finds the patch and the side of a run along a line between patches.
-  void find_side(EdgeRun & run, bool along_u) const;
+  /// Finds the patch and the side of a run along a line between patches. `sides`: those of the face, once they are known.
+  void find_side(EdgeRun& run, bool along_u, std::optional<FaceSides>& sides) const;
   void sort();
 
   const PatchEdges* edges_;

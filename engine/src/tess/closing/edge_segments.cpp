@@ -59,15 +59,15 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
 }
 
 void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
-  list_side(run.patch, run.side);
-  if (side_.empty()) return;
+  const std::vector<Place>& side = places_of(run.patch, run.side);
+  if (side.empty()) return;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
   const bool along_u = runs_along_u(run.side);
   const bool is_point =
-      side_.size() == 1 || (!cut_of(run.patch) && divisions_[run.patch].collapsed.has(edge_of(run.side)));
+      side.size() == 1 || (!cut_of(run.patch) && divisions_[run.patch].collapsed.has(edge_of(run.side)));
   if (is_point) {
-    const PatchVertex point{run.patch, side_.front().vertex};
-    for (const Place& place : side_) same_.push_back({point, PatchVertex{run.patch, place.vertex}});
+    const PatchVertex point{run.patch, side.front().vertex};
+    for (const Place& place : side) same_.push_back({point, PatchVertex{run.patch, place.vertex}});
     append({.run = &run, .low = point, .high = point, .start = point.vertex, .end = point.vertex},
            pieces.front().range.from, pieces.back().range.to, segments);
     return;
@@ -75,8 +75,10 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   const auto [from, to] =
       std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
   std::optional<double> before;  // the parameter where the last segment ends
-  for (std::size_t k = 0; k + 1 < side_.size(); ++k) {
-    const Place &a = side_[k], &b = side_[k + 1];
+  const auto first = std::ranges::upper_bound(side, from, {}, &Place::along);
+  for (auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(first - side.begin() - 1, 0));
+       k + 1 < side.size() && side[k].along < to; ++k) {
+    const Place &a = side[k], &b = side[k + 1];
     const double low = std::max(a.along, from), high = std::min(b.along, to);
     if (!(low < high)) continue;
     if (!before) before = parameter_at(pieces, along_u, low);
@@ -100,20 +102,23 @@ std::uint32_t EdgeSegments::ring_vertex(std::uint32_t patch, std::size_t side, i
   return static_cast<std::uint32_t>(division.inner_count()) + (at == division.ring_count() ? 0 : at);
 }
 
-void EdgeSegments::list_side(std::uint32_t patch, Side side) {
-  side_.clear();
+const std::vector<EdgeSegments::Place>& EdgeSegments::places_of(std::uint32_t patch, Side side) {
+  const auto [known, is_new] = sides_.try_emplace(4 * std::uint64_t{patch} + static_cast<std::uint64_t>(side));
+  std::vector<Place>& places = known->second;
+  if (!is_new) return places;
   if (const CutPatch* const cut = cut_of(patch)) {
-    for (const CutPatch::SideVertex& vertex : cut->side_vertices)
-      if (vertex.side == side) side_.push_back({vertex.along, vertex.vertex});
-    return;
+    const auto of_side = std::ranges::equal_range(cut->side_vertices, side, {}, &CutPatch::SideVertex::side);
+    for (const CutPatch::SideVertex& vertex : of_side) places.push_back({vertex.along, vertex.vertex});
+    return places;
   }
-  if (divisions_[patch].empty) return;
+  if (divisions_[patch].empty) return places;
   const Domain domain = set_.sources[patch].domain;
   const bool along_u = runs_along_u(side);
   const Segments segments = divisions_[patch].border[static_cast<std::size_t>(side)];
   for (int k = 0; k <= segments.rate(); ++k)
-    side_.push_back({line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k),
-                     ring_vertex(patch, static_cast<std::size_t>(side), is_backward(side) ? segments.rate() - k : k)});
+    places.push_back({line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k),
+                      ring_vertex(patch, static_cast<std::size_t>(side), is_backward(side) ? segments.rate() - k : k)});
+  return places;
 }
 
 PatchVertex EdgeSegments::vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along) {

@@ -64,8 +64,8 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   void append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments);
   /// Completes a segment between two parameters of the loop's curve.
   void append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const;
-  /// Lists the vertices of a side by growing places.
-  void list_side(std::uint32_t patch, Side side);
+  /// The vertices of a side by growing places.
+  const std::vector<Place>& places_of(std::uint32_t patch, Side side);
   /// Returns the vertex at a place from a to b; it is inserted if there is none.
   PatchVertex vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along);
   PatchVertex insert_on_side(std::uint32_t patch, Side side, std::uint32_t start, std::uint32_t end, double along);
@@ -79,7 +79,7 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   std::span<const CutPatch> cuts_;
   std::vector<InsertedVertex> inserted_;
   std::vector<std::array<PatchVertex, 2>> same_;
-  std::vector<Place> side_;
+  std::unordered_map<std::uint64_t, std::vector<Place>> sides_;     ///< by 4 * patch + side, as far as they are known
   std::unordered_multimap<std::uint64_t, std::uint32_t> on_sides_;  ///< vertices inserted where runs end on sides
 };
 

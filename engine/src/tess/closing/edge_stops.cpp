@@ -53,7 +53,7 @@ void EdgeStops::find(const PatchSet::Impl& set, const EdgeRuns& runs, std::size_
     for (const EdgeRun& run : of) {
       const std::span<const TrimPiece> pieces = runs.pieces(run);
       if (run.is_side || runs.coedge(run.face, pieces.front())->reversed != reversed) continue;
-      const ChordStops stops = this->list(runs, run.face, pieces.front(), own);
+      const ChordStops stops = this->list(runs, run.face, pieces, own);
       found.clear(), points.clear();
       (void)chords.append(pieces, stops, limits(run.patch), points, found);
       for (const double t : found) list.push_back(runs.to_edge(run.face, pieces.front(), t));
@@ -62,13 +62,19 @@ void EdgeStops::find(const PatchSet::Impl& set, const EdgeRuns& runs, std::size_
   }
 }
 
-ChordStops EdgeStops::list(const EdgeRuns& runs, std::uint32_t face, const TrimPiece& piece,
+ChordStops EdgeStops::list(const EdgeRuns& runs, std::uint32_t face, std::span<const TrimPiece> pieces,
                            std::vector<double>& list) const {
   list.clear();
+  const TrimPiece& piece = pieces.front();
   const Coedge* const coedge = runs.coedge(face, piece);
   if (!coedge) return {};
-  for (const double s : stops_[runs.edges().faces[face].first_edge + coedge->edge])
-    list.push_back(runs.to_curve(face, piece, s));
+  const std::vector<double>& stops = stops_[runs.edges().faces[face].first_edge + coedge->edge];
+  const auto [from, to] =
+      std::minmax({runs.to_edge(face, piece, piece.range.from), runs.to_edge(face, piece, pieces.back().range.to)});
+  auto stop = std::ranges::lower_bound(stops, from);
+  if (stop != stops.begin()) --stop;
+  for (; stop != stops.end() && (*stop <= to || stop == stops.begin() || *(stop - 1) <= to); ++stop)
+    list.push_back(runs.to_curve(face, piece, *stop));
   if (list.size() > 1 && list.front() > list.back()) std::ranges::reverse(list);
   const Interval& range = (*runs.edges().faces[face].loops)[piece.loop].curves[piece.curve_index].domain();
   return {list, same_share * (range.to - range.from)};

@@ -28,8 +28,9 @@ class EdgeStops {
   void find(const PatchSet::Impl& set, const EdgeRuns& runs, std::size_t edge,
             FunctionRef<Segments(std::uint32_t patch, Side side)> segments,
             FunctionRef<ChordLimits(std::uint32_t patch)> limits);
-  /// Lists the stops of a piece's curve into `list`, whose values the result refers to.
-  ChordStops list(const EdgeRuns& runs, std::uint32_t face, const TrimPiece& piece, std::vector<double>& list) const;
+  /// Lists the stops of pieces of one curve into `list`, whose values the result refers to.
+  ChordStops list(const EdgeRuns& runs, std::uint32_t face, std::span<const TrimPiece> pieces,
+                  std::vector<double>& list) const;
 
  private:
   std::vector<std::vector<double>> stops_;  ///< by edge; empty if it has a single coedge, or no chords

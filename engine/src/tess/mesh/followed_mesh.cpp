@@ -113,8 +113,18 @@ Result<MeshChange> ProvenMesh::update_anew(PatchSet& set, const PatchEdits& edit
   const std::size_t changed = replace(**next);
   revision_ = inner.revision;
   if (is_same)
-    if (Status status = run(set, out, {.cancel = execution.cancel}); !status.ok()) return status;
+    if (Status status = write_again(set, out, {.cancel = execution.cancel}); !status.ok()) return status;
   return MeshChange{!is_same, is_same ? changed : std::max<std::size_t>(changed, 1)};
+}
+
+Status ProvenMesh::write_again(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  const MeshCapacity size = capacity();
+  std::vector<std::uint32_t> indices(out.indices.empty() ? 3 * size.triangles : 0);
+  std::vector<std::uint32_t> quads(out.quads.empty() ? 4 * size.quads : 0);
+  MeshViews all = out;
+  if (out.indices.empty()) all.indices = indices;
+  if (out.quads.empty()) all.quads = quads;
+  return run(set, all, execution);
 }
 
 void ProvenMesh::touch_edited(const PatchSet::Impl& set) {

@@ -1,7 +1,9 @@
 #include "tess/mesh/merged_mesh.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "base/impl_access.h"
 #include "tess/edges/position_bits.h"
@@ -51,13 +53,23 @@ Result<std::unique_ptr<Tessellation::Impl>> MergedMesh::make(const PatchSet& set
 
 Status MergedMesh::find(const PatchSet& set, const Execution& execution) {
   Mesh all = own_->allocate();
-  if (!has_normals_) all.normals.clear();
   if (Status status = own_->run(set, all.views(), execution); !status.ok()) return status;
-  if (all.positions_f64.empty())
-    number(all.positions, all.normals, numbers_, sources_);
-  else
-    number(all.positions_f64, all.normals, numbers_, sources_);
+  (void)renumber(all);
   return {};
+}
+
+bool MergedMesh::renumber(const Mesh& all) {
+  const std::vector<float>& normals = has_normals_ ? all.normals : no_normals_;
+  std::vector<std::uint32_t> numbers, sources;
+  if (all.positions_f64.empty())
+    number(all.positions, normals, numbers, sources);
+  else
+    number(all.positions_f64, normals, numbers, sources);
+  const bool is_same = numbers == numbers_;
+  numbers_ = std::move(numbers);
+  sources_ = std::move(sources);
+  is_stale_ = false;
+  return is_same;
 }
 
 MeshCapacity MergedMesh::capacity() const {
@@ -78,6 +90,10 @@ Mesh MergedMesh::allocate() const {
 
 Status MergedMesh::check(const MeshViews& out) const {
   if (Status status = check_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
+  return check_normals(out);
+}
+
+Status MergedMesh::check_normals(const MeshViews& out) const {
   if (!out.normal.empty() && !has_normals_)
     return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
   return {};
@@ -109,6 +125,7 @@ void MergedMesh::gather(const MeshViews& own, const MeshViews& out) const {
 }
 
 Status MergedMesh::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
+  if (is_stale_) return {StatusCode::stale, "an update did not end: update the mesh again"};
   if (Status status = check(out); !status.ok()) return status;
   Mesh own;
   const MeshViews views = views_for(out, own);
@@ -122,15 +139,23 @@ Status MergedMesh::run(const PatchSet& set, const MeshViews& out, const Executio
 
 Result<MeshChange> MergedMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                       const Execution& execution) {
-  if (Status status = check_updated_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
-  Mesh own = own_->allocate();
-  if (out.normal.empty()) own.normals.clear();
-  Result<MeshChange> change = own_->update(set, edits, own.views(), execution);
-  if (!change) return change;
-  if (change->topology) {
+  if (!is_stale_)
+    if (Status status = check_updated_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
+  if (Status status = check_normals(out); !status.ok()) return status;
+  Mesh all = own_->allocate();
+  const bool was_stale = std::exchange(is_stale_, true);
+  Result<MeshChange> change = own_->update(set, edits, all.views(), execution);
+  if (!change) {
+    is_stale_ = was_stale;
+    return change;
+  }
+  if (change->topology || was_stale) {
+    change->topology = true;
     if (Status status = find(set, {.cancel = execution.cancel}); !status.ok()) return status;
+  } else if (renumber(all)) {
+    gather(all.views(), out);
   } else {
-    gather(own.views(), out);
+    *change = {true, std::max<std::size_t>(change->patches, 1)};
   }
   return change;
 }

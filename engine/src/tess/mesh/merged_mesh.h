@@ -10,8 +10,8 @@ namespace tessera::inline abi_0_1 {
 
 /// A mesh whose vertices at one place are one. With normals, those of one normal.
 ///
-/// The places when the topology is made decide. A vertex has the parameters of the patch that comes first. Memory: 8
-/// bytes per vertex of the patches, and those vertices while it is written.
+/// A vertex has the parameters of the patch that comes first. Memory: 8 bytes per vertex of the patches, and these
+/// vertices themselves while the mesh is made or written.
 class MergedMesh final : public Tessellation::Impl {
  public:
   /// Errors: those of ProvenMesh::make(), whose `options` must not share vertices.
@@ -28,13 +28,18 @@ class MergedMesh final : public Tessellation::Impl {
  private:
   MergedMesh(std::unique_ptr<ProvenMesh> own, bool has_normals) : own_(std::move(own)), has_normals_(has_normals) {}
   Status find(const PatchSet& set, const Execution& execution);
+  /// Numbers the vertices of a whole mesh anew. Returns whether the numbers are as before.
+  bool renumber(const Mesh& all);
   Status check(const MeshViews& out) const;
+  Status check_normals(const MeshViews& out) const;
   /// Makes memory for the patches' own vertices; triangles go to `out` at once.
   MeshViews views_for(const MeshViews& out, Mesh& own) const;
   void gather(const MeshViews& own, const MeshViews& out) const;
 
   std::unique_ptr<ProvenMesh> own_;
   bool has_normals_;
+  bool is_stale_ = false;  ///< an update has failed after it changed the plan
+  std::vector<float> no_normals_ = {};
   std::vector<std::uint32_t> numbers_;  ///< by vertex of a patch: that of the merged mesh
   std::vector<std::uint32_t> sources_;  ///< by vertex of the merged mesh: the first of a patch
 };

@@ -56,10 +56,12 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   Status start(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
   /// Makes the memory for proofs of a set.
   Status start_proofs(const PatchSet& set, const Execution& execution);
-  /// Touches the patches that were edited since the plan was proven.
   /// update() of a set with trims, or with edges of shapes.
   Result<MeshChange> update_anew(PatchSet & set, const PatchEdits& edits, const MeshViews& out,
                                  const Execution& execution);
+  /// run() into views that need not have triangles.
+  Status write_again(const PatchSet& set, const MeshViews& out, const Execution& execution) const;
+  /// Touches the patches that were edited since the plan was proven.
   void touch_edited(const PatchSet::Impl& set);
   /// Replaces the plan by one from the edited patches, or from all, and returns how many patches changed.
   Result<std::size_t> redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution);

@@ -42,7 +42,8 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
                              [this](std::uint32_t patch) { return chord(patch); }));
     double excess = 0;
     for (const std::uint32_t c : closed.edited_cuts) {
-      const CutPatch& edited = plan.rare_->cuts[c];
+      CutPatch& edited = plan.rare_->cuts[c];
+      edited.sliver *= 2;  // of the whole chord, and of its parts beside it
       excess = std::max(excess, bound_cut(room_of(edited, request, plan), edited, plan));
     }
     if (excess <= 1) {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "tess/edges/side_curve.h"
 #include "base/union_find.h"
+#include "tess/edges/side_curve.h"
 #include "tess/plan/ring_vertices.h"
 
 namespace tessera::inline abi_0_1 {

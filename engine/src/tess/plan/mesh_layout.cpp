@@ -54,7 +54,7 @@ bool CertifiedPlan::has_triangles_of(const CertifiedPlan& other) const {
     return a.triangles == b.triangles && a.vertices.size() == b.vertices.size();
   };
   const auto is_same_edit = [](const PatchEdit& a, const PatchEdit& b) {
-    return a.patch == b.patch && a.changed == b.changed && a.added == b.added;
+    return a.patch == b.patch && a.vertices.size() == b.vertices.size() && a.changed == b.changed && a.added == b.added;
   };
   if (!std::ranges::equal(divisions_, other.divisions_) || !std::ranges::equal(cuts(), other.cuts(), is_same_cut))
     return false;

@@ -146,7 +146,7 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   std::vector<std::uint8_t> borders(edges_.count(), 0);
   for (const std::uint32_t edge : edges_.of_borders())
     if (edge != SharedEdges::none) borders[edge] += borders[edge] < 2;
-  std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
+  std::vector<double> shares(cuts.size(), cell_share * request.cut_share), excess(cuts.size(), 2);
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
     const std::vector<Division> before = std::move(plan.divisions_);
@@ -166,7 +166,9 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
           const std::uint32_t edge = edges_.edge(k, side);
           room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && borders[edge] == 2;
         }
-        const auto stops_of = [&](const TrimPiece& piece) { return stops.list(*runs_, cut_faces_[c], piece, list); };
+        const auto stops_of = [&](std::span<const TrimPiece> chain) {
+          return stops.list(*runs_, cut_faces_[c], chain, list);
+        };
         if (runs_ && cut_faces_[c] != no_id) room.limits.stops = stops_of;
         maker.make(set_->trims->regions[cuts[c].region], face_sides_[cuts[c].region], cuts[c], room.limits,
                    plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.rare_->cuts[c]);

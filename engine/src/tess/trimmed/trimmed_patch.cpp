@@ -90,9 +90,9 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
     std::uint32_t last = add_point(pieces[first].start());
     parameters_.assign(1, pieces[first].range.from);
     const std::span<const TrimPiece> chain = pieces.subspan(first, count);
-    const double sliver =
-        patch_.stops ? chords_of_pieces_.append(chain, (*patch_.stops)(chain.front()), limits_, points_, parameters_)
-                     : chords_of_pieces_.append(chain, limits_, points_, parameters_);
+    const double sliver = patch_.stops
+                              ? chords_of_pieces_.append(chain, (*patch_.stops)(chain), limits_, points_, parameters_)
+                              : chords_of_pieces_.append(chain, limits_, points_, parameters_);
     sliver_ = std::max(sliver_, sliver);
     for (std::size_t n = 0; last + 1 < points_.size(); ++last, ++n) {
       chords_.push_back({last, last + 1});

@@ -30,9 +30,9 @@ struct TrimmedPatch {
   double bend;             ///< see ChordLimits
   VertexRounding rounding;
   std::array<bool, 4> is_shared{};  ///< by Side: whether another patch has the same border, as across a seam
-  /// If set, loops name edges of a shape: chords end where curves do, and at the stops of each piece's curve, which are
+  /// If set, loops name edges of a shape: chords end where curves do, and at the stops of a chain of pieces, which are
   /// valid until the next call.
-  std::optional<FunctionRef<ChordStops(const TrimPiece&)>> stops = {};
+  std::optional<FunctionRef<ChordStops(std::span<const TrimPiece>)>> stops = {};
   double chord_share = 1;  ///< the largest length of a chord, in cells
 };
 

@@ -47,16 +47,19 @@ class ClosedWriter {
     for (std::size_t k = 0; k < edit.added.size(); ++k) write(count + k, edit.added[k]);
   }
 
-  /// Moves the vertices of a place to the middle of their box.
+  /// Moves the vertices of a place to it. In another set than that of the plan, the place is the centre of their box.
   template <class T>
-  void move(std::uint32_t place, const View3<T>& positions) const {
+  void move(std::uint32_t place, const View3<T>& positions, const Vec3& origin) const {
     const std::span<const ClosedEdges::Member> of_place = members(place);
     Box3 box;
     for (const ClosedEdges::Member& member : of_place) {
       const std::size_t at = vertex(member);
       box.extend(Vec3{double(positions.at(at, 0)), double(positions.at(at, 1)), double(positions.at(at, 2))});
     }
-    for (const ClosedEdges::Member& member : of_place) put_vector(positions, vertex(member), box.centre());
+    Vec3 to = closed_.places[place] + origin;
+    const double far = 0x1p-20 * (max_abs(box.lower) + max_abs(box.upper));  // above all rounding
+    if (!(max_abs(to - box.centre()) <= max_abs(box.upper - box.lower) / 2 + far)) to = box.centre();
+    for (const ClosedEdges::Member& member : of_place) put_vector(positions, vertex(member), to);
   }
 
   /// Gives the vertices of a place the normal of the first of them that is at most `apart_` away.
@@ -107,8 +110,8 @@ Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::o
   if (Status status = parallel_for(closed.edits.size(), patches_per_task, quiet, write); !status.ok()) return status;
   const auto move = [&](std::size_t begin, std::size_t end) {
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
-      if (!out.position.empty()) writer.move(place, out.position);
-      if (!out.position_f64.empty()) writer.move(place, out.position_f64);
+      if (!out.position.empty()) writer.move(place, out.position, {});
+      if (!out.position_f64.empty()) writer.move(place, out.position_f64, set.origin);
       if (!out.normal.empty() && crease_angle) writer.join_normals(place);
     }
   };
