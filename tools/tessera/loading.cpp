@@ -72,6 +72,21 @@ Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit
   return grids;
 }
 
+/// Adds the surfaces and shapes of another file.
+void append(Model& model, Model&& other) {
+  const auto move = [](auto& to, auto& from) { std::move(from.begin(), from.end(), std::back_inserter(to)); };
+  for (Instance& instance : other.instances) {
+    instance.shape += static_cast<std::uint32_t>(model.shapes.size());
+    instance.first_surface += model.surfaces.size();
+  }
+  move(model.surfaces, other.surfaces);
+  move(model.warnings, other.warnings);
+  move(model.shapes, other.shapes);
+  move(model.instances, other.instances);
+  if (model.unit != other.unit) model.unit.clear();
+  if (model.file_unit != other.file_unit) model.file_unit.clear();
+}
+
 /// Reads one file and adds it to `loaded`.
 Status add_file(const std::string& file, const ModelOptions& options, With with, Timings& timings, Loaded& loaded) {
   Result<Model> model = [&] {
@@ -80,22 +95,41 @@ Status add_file(const std::string& file, const ModelOptions& options, With with,
   }();
   if (!model) return model.status();
   say_warnings(*model);
-  if (with == With::patches) {
+  const bool has_shapes = !model->instances.empty();
+  if (with == With::patches || (with == With::shapes && !has_shapes)) {
     const auto phase = timings.phase("convert");
     Result<std::vector<PatchGrid>> grids = convert(*model, options.fit);
     if (!grids) return in_file(file, grids.status());
     std::move(grids->begin(), grids->end(), std::back_inserter(loaded.grids));
   }
+  loaded.all_have_shapes &= has_shapes;
   loaded.files.push_back(file);
   loaded.first.push_back(loaded.model.surfaces.size());
-  if (loaded.files.size() == 1) {
+  if (loaded.files.size() == 1)
     loaded.model = *std::move(model);
-    return {};
-  }
-  const auto append = [](auto& to, auto& from) { std::move(from.begin(), from.end(), std::back_inserter(to)); };
-  append(loaded.model.surfaces, model->surfaces);
-  append(loaded.model.warnings, model->warnings);
+  else
+    append(loaded.model, *std::move(model));
   return {};
+}
+
+/// A message that begins with "surface 3 (rim): ", as surfaces of a model or faces of a shape are counted, with the place
+/// in the file instead. `first` is the model's surface that is counted as 0.
+Status in_its_file(const Loaded& loaded, std::size_t first, const Status& status) {
+  if (status.index() == Status::no_index) return in_file(loaded.files[0], status);
+  const std::size_t surface = first + static_cast<std::size_t>(status.index());
+  const std::string& message = status.message();
+  const std::string& name = *loaded.model.surfaces[surface].name;
+  const std::string prefix =
+      "surface " + std::to_string(status.index()) + (name.empty() ? "" : " (" + name + ")") + ": ";
+  return loaded.in_surface(surface, {status.code(), message.substr(message.starts_with(prefix) ? prefix.size() : 0)});
+}
+
+/// The set, after its faults are printed, or its error, with the places in the file.
+Result<PatchSet> with_places(const Loaded& loaded, std::size_t first, Result<PatchSet> set) {
+  if (!set) return in_its_file(loaded, first, set.status());
+  for (const Status& fault : set->trim_faults())
+    warn(in_its_file(loaded, first, fault).message() + "; it is kept whole");
+  return set;
 }
 
 }  // namespace
@@ -168,21 +202,30 @@ Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timi
                 "none of the " + std::to_string(loaded.failed.size()) + " models can be used");
 }
 
+Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings) {
+  if (loaded.grids.size() == loaded.model.surfaces.size()) return {};
+  const auto phase = timings.phase("convert");
+  Result<std::vector<PatchGrid>> grids = convert(loaded.model, options.fit);
+  if (!grids) return in_its_file(loaded, 0, grids.status());
+  loaded.grids = *std::move(grids);
+  return {};
+}
+
 Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
   const auto phase = timings.phase("pack");
   PatchSetOptions packing;
   packing.trims = !options.untrimmed;
-  Result<PatchSet> set = make_patch_set(loaded.model, loaded.grids, packing);
-  // A message names the surface within the job; the user knows its place in the file.
-  const auto in_its_file = [&](const Status& status) {
-    const auto surface = static_cast<std::size_t>(status.index());
-    const std::size_t prefix = in_surface(loaded.model, surface, Status(status.code(), "")).message().size();
-    return loaded.in_surface(surface, Status(status.code(), status.message().substr(prefix)));
-  };
-  if (!set && set.status().index() == Status::no_index) return in_file(loaded.files[0], set.status());
-  if (!set) return in_its_file(set.status());
-  for (const Status& fault : set->trim_faults()) warn(in_its_file(fault).message() + "; it is kept whole");
-  return set;
+  return with_places(loaded, 0, make_patch_set(loaded.model, loaded.grids, packing));
+}
+
+Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
+                            const ModelOptions& options, Timings& timings) {
+  const auto phase = timings.phase("pack");
+  PatchSetOptions packing;
+  packing.trims = !options.untrimmed;
+  FitOptions fit = options.fit;
+  if (stretch > 0) fit.tolerance /= stretch;
+  return with_places(loaded, first_surface, make_patch_set(loaded.model.shapes[shape], packing, fit));
 }
 
 Json files_json(const Loaded& loaded) {
@@ -194,10 +237,13 @@ Json files_json(const Loaded& loaded) {
 }
 
 void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set) {
+  add_model_facts(object, loaded, set.patch_count(), set.fit_error());
+}
+void add_model_facts(Json& object, const Loaded& loaded, std::size_t patches, const FitError& error) {
   object["surfaces"] = loaded.model.surfaces.size();
-  object["patches"] = set.patch_count();
+  object["patches"] = patches;
   object["trimmed_surfaces"] = loaded.trimmed();
-  object["fit_error"] = fit_json(set);
+  object["fit_error"] = fit_json(error);
   object["warnings"] = warnings_json(loaded.model);
 }
 

@@ -35,6 +35,7 @@ struct Loaded {
   std::vector<std::size_t> first;                      ///< the first surface of each file
   std::vector<PatchGrid> grids;                        ///< the patches of each surface, if requested
   std::vector<std::pair<std::string, Status>> failed;  ///< the other files, and their errors, which are already printed
+  bool all_have_shapes = true;                         ///< whether all surfaces are faces of the model's instances
 
   std::size_t trimmed() const;  ///< number of surfaces with trims
   /// `status` as "part.obj: surface 3 (rim): ...", the surface counted within its file.
@@ -43,21 +44,30 @@ struct Loaded {
   Status status() const;
 };
 
-enum class With { surfaces, patches };
+enum class With { surfaces, patches, shapes };  ///< shapes: as surfaces if all files have shapes, or else as patches
 
 /// Reads the files of a job one after the other, and converts their surfaces, on all threads. Prints a warning on
 /// standard error for each part of a file that is not read, and leaves out files that fail. Errors: those of the only
 /// file, or of the last one if all of several fail.
 Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings);
 
+/// Converts the surfaces of a model that load() has left as they are. Errors name file and surface.
+Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings);
+
 /// Packs what trimming loops keep of all patches into a set; with options.untrimmed, all of them. Prints a warning for
 /// each surface whose loops cannot be used. Errors name file and surface.
 Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings);
+
+/// Packs the faces of a shape in the same way. An instance of it has the surfaces from `first_surface` on, which messages
+/// name; lengths grow by at most `stretch` where instances stand.
+Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
+                            const ModelOptions& options, Timings& timings);
 
 /// The beginning of every job's JSON report: the files, and the files that failed.
 Json files_json(const Loaded& loaded);
 /// Adds the end of the report: the number of trimmed surfaces, the fit error, warnings.
 void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set);
+void add_model_facts(Json& object, const Loaded& loaded, std::size_t patches, const FitError& error);
 Json warnings_json(const Model& model);
 
 /// "12 surfaces are trimmed", or an empty text.

@@ -33,6 +33,8 @@ class Timings {
 
   /// "read 0.0123 s, pack 0.001 s; 0.0150 s in all", in the order of the phases.
   std::string as_text() const;
+  /// The seconds since this object was made.
+  double total() const { return all_.seconds(); }
   /// {"read": ..., "total": ...} in seconds; the total is the time since this object was made.
   Json as_json() const;
 
