@@ -156,8 +156,8 @@ Status run_info(const Job& job, const Options& options, const CommonOptions& com
   {
     const auto phase = timings.phase("joined edges");
     const Result<std::optional<JoinedFacts>> joined = count_joined(loaded->model);
-    if (!joined) return in_file(job.inputs[0], joined.status());
-    found.joined = *joined;
+    if (!joined && joined.status().code() == StatusCode::out_of_memory) return joined.status();
+    if (joined) found.joined = *joined;  // else loops that a remark tells of
   }
   if (options.max_joins > 0) {
     const auto phase = timings.phase("joins");

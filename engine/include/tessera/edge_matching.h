@@ -34,7 +34,7 @@ namespace tessera::inline abi_0_1 {
 /// - Faces that are joined, and are in no solid's shell, form shells. Each closed one becomes a solid of its own.
 ///
 /// Errors: invalid_argument (a distance that is not finite, or not above 0; ids), those of evaluate_jet() as "face 3
-/// (rim): ..." (index = the face), out_of_memory. Memory: about 2 kB per edge. Time: O(n log n) for n edges, about 0.2
+/// (rim): ..." (index = the face), out_of_memory. Memory: about 3 kB per edge. Time: O(n log n) for n edges, about 0.2
 /// ms each.
 Result<Shape> joined_edges(const Shape& shape, double distance);
 

@@ -58,7 +58,8 @@ std::vector<double> first_parameters(const Curve& curve, std::size_t spans) {
 double nearest_fraction(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 along = b - a;
   const double square = dot(along, along);
-  return square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0;
+  const double x = dot(p - a, along) / square;
+  return x > 0 ? std::min(x, 1.0) : 0;  // NaN where squares overflow, or the segment is a point
 }
 
 Status in_face(const Shape& shape, std::size_t face, const Status& status) {
