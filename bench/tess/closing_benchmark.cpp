@@ -1,5 +1,5 @@
-// Meshes of shapes whose faces share edges, beside the same faces unconnected: plan and mesh, on one thread. Each mesh is
-// checked after it was timed.
+// Meshes of shapes whose faces share edges, beside the same faces unconnected: plan and mesh, on one thread. Each mesh
+// is checked after it was timed.
 
 #include <benchmark/benchmark.h>
 

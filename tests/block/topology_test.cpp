@@ -23,8 +23,8 @@ constexpr std::array<std::array<std::uint32_t, 4>, 6> cube_faces{
 
 Vec3 corner(std::uint32_t k) { return {double(k & 1), double(k >> 1 & 1), double(k >> 2 & 1)}; }
 
-/// A cube of bilinear faces; vertices are the bits of their coordinates. Faces 0 to 2 are trimmed along their sides, the
-/// others have outlines.
+/// A cube of bilinear faces; vertices are the bits of their coordinates. Faces 0 to 2 are trimmed along their sides,
+/// the others have outlines.
 Shape cube() {
   Shape shape;
   shape.name = std::string("cube");

@@ -167,7 +167,8 @@ TEST(ClosedShape, LoopsWithoutCoedgesStayOpen) {
   EXPECT_EQ(made.report.non_finite_vertices, 0u);
 }
 
-/// Edges may be those of other places altogether: then gaps are as large as the plate, and the mesh is closed all the same.
+/// Edges may be those of other places altogether: then gaps are as large as the plate, and the mesh is closed all the
+/// same.
 TEST(ClosedShape, WrongCoedgesMakeGapsAndNoHoles) {
   const Shape exact = joined(drilled_plate(), 1e-6);
   std::mt19937_64 random(11);

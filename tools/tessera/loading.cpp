@@ -112,8 +112,8 @@ Status add_file(const std::string& file, const ModelOptions& options, With with,
   return {};
 }
 
-/// A message that begins with "surface 3 (rim): ", as surfaces of a model or faces of a shape are counted, with the place
-/// in the file instead. `first` is the model's surface that is counted as 0.
+/// A message that begins with "surface 3 (rim): ", as surfaces of a model or faces of a shape are counted, with the
+/// place in the file instead. `first` is the model's surface that is counted as 0.
 Status in_its_file(const Loaded& loaded, std::size_t first, const Status& status) {
   if (status.index() == Status::no_index) return in_file(loaded.files[0], status);
   const std::size_t surface = first + static_cast<std::size_t>(status.index());

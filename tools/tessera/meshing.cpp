@@ -119,8 +119,9 @@ Box3 box_of(const Model& model, std::span<const ShapeSet> shapes) {
   return box;
 }
 
-/// A bound of how far flatten() of mesh_assembly.h moves vertices of a model in this box, if they lie within `tolerance`
-/// of it. In float that is 2^-24 of the distance from the box's centre; in double a few units in the last place.
+/// A bound of how far flatten() of mesh_assembly.h moves vertices of a model in this box, if they lie within
+/// `tolerance` of it. In float that is 2^-24 of the distance from the box's centre; in double a few units in the last
+/// place.
 double flat_rounding(const Box3& box, double tolerance, Precision precision) {
   if (precision == Precision::single_precision) return std::ldexp(box.diagonal() / 2 + tolerance, -24);
   return std::ldexp(std::max(max_abs(box.lower), max_abs(box.upper)) + tolerance, -50);

@@ -39,8 +39,8 @@ bool suits_shapes(const TessellateOptions& options, const Loaded& loaded);
 
 /// Meshes all surfaces as one set. Errors: those of packing and of Tessellation.
 Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, Timings& timings);
-/// Meshes each shape once. `flat`: whether the file will hold one mesh of all instances, which rounds once more. Errors:
-/// as above.
+/// Meshes each shape once. `flat`: whether the file will hold one mesh of all instances, which rounds once more.
+/// Errors: as above.
 Result<Meshed> mesh_shapes(const TessellateOptions& options, const Loaded& loaded, bool flat, Timings& timings);
 
 }  // namespace tessera::cli

@@ -1,8 +1,8 @@
 #pragma once
 // Vertices and edges that faces share, and how loops use them.
 //
-// Ids are indices into the arrays of one Shape (see model.h), so a shape may be copied, placed and moved to another model
-// as it is.
+// Ids are indices into the arrays of one Shape (see model.h), so a shape may be copied, placed and moved to another
+// model as it is.
 
 #include <cstdint>
 #include <optional>

@@ -18,8 +18,8 @@
 // - A face that the file reverses has u and v swapped, so that normals of solids point outwards.
 // - `placement` is the face's place in the assembly; `name` is the product's (STEP), the entity's (IGES) or empty
 //   (BREP).
-// - `colour` is that of the face, or else of the shell, solid or part that holds it, in STEP and IGES. Colours of single
-//   instances in STEP are left out.
+// - `colour` is that of the face, or else of the shell, solid or part that holds it, in STEP and IGES. Colours of
+//   single instances in STEP are left out.
 // - A face that can't be read is left out, and a warning says why: degrees above max_degree, an unbounded plane, input
 //   that OpenCASCADE rejects (such as weights that are not positive).
 //

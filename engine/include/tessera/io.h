@@ -134,12 +134,12 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 /// - .glb and .gltf: each shape is stored once, and each instance is a node with its name and placement. Colours become
 ///   materials: a mesh has one primitive per colour of its parts. Positions are relative to each mesh's origin, which
 ///   the node adds. The unit of glTF is the metre: the node above all others scales by 0.001 if the assembly's unit is
-///   "mm"; "um", "cm", "m", "km", "inch" and "ft" are known too, and any other unit counts as metres. Instances that are
-///   sheared have a mesh of their own, because nodes cannot shear.
+///   "mm"; "um", "cm", "m", "km", "inch" and "ft" are known too, and any other unit counts as metres. Instances that
+///   are sheared have a mesh of their own, because nodes cannot shear.
 /// - other formats: one mesh, as flatten() makes it, in the assembly's unit; colours are not kept.
 ///
-/// Errors: those of write_mesh() (index = the shape); invalid_argument (an instance of no shape, a colour beyond 0 to 1; index
-/// = the instance), non_finite (a placement).
+/// Errors: those of write_mesh() (index = the shape); invalid_argument (an instance of no shape, a colour beyond 0 to
+/// 1; index = the instance), non_finite (a placement).
 Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path);
 
 /// How read_mesh() treats polygons, and where it reports what it skips.

@@ -68,8 +68,8 @@ Result<std::vector<MeshPart>> parts_by_face(const Mesh& mesh, const PatchSet& se
 /// Returns one mesh of all instances, in the assembly's space, for formats without instances.
 ///
 /// - The origin is the centre of the box of all vertices. A single instance that is not moved keeps its mesh as it is.
-/// - Positions are rounded once more to float: they move by at most 2^-25 of the box's diagonal. Positions in double move
-///   by a few units in their last place, and are kept if all meshes have them.
+/// - Positions are rounded once more to float: they move by at most 2^-25 of the box's diagonal. Positions in double
+///   move by a few units in their last place, and are kept if all meshes have them.
 /// - Normals turn with the inverse transpose of the placement. Faces turn around where the placement mirrors.
 /// - Normals and parameters are kept if all meshes have them. Patches are not.
 /// - Parts: those of each instance, named "instance/part". A mesh without parts becomes one, with the instance's name.

@@ -59,8 +59,8 @@ struct Instance {
 };
 
 /// The surfaces of a file, or those that a program makes. With instances, `surfaces` holds the instances' faces, as
-/// placed_faces() of topology.h lists them, and a shape can be meshed once for all its instances. Without, `surfaces` is
-/// all.
+/// placed_faces() of topology.h lists them, and a shape can be meshed once for all its instances. Without, `surfaces`
+/// is all.
 struct Model {
   std::string name;                    ///< may be empty
   std::vector<ModelSurface> surfaces;  ///< in the order of the file

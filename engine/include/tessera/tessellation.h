@@ -184,15 +184,15 @@ struct MeshChange {
 /// Exceptions:
 ///
 /// - lengths that are shares of the set's size, TessellationOptions::fewest and `smallest`
-/// - where the borders of these patches are moved, by welding or to others of the same float bits: the patches that they
-///   are moved to
+/// - where the borders of these patches are moved, by welding or to others of the same float bits: the patches that
+///   they are moved to
 /// - with pixels: whole patches beside cut ones, see below
 ///
 /// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than a quarter of the tolerance,
 /// or all that pixels leave, as for parts far from the set's origin with a small tolerance, then the vertices of the
-/// patch are sums of doubles instead, from the set's double control points. These are rounded once to float: off by half
-/// a unit in the last place of a position relative to the set's origin. They take several times as long, and a mesh that
-/// has any is never written past the caches.
+/// patch are sums of doubles instead, from the set's double control points. These are rounded once to float: off by
+/// half a unit in the last place of a position relative to the set's origin. They take several times as long, and a
+/// mesh that has any is never written past the caches.
 ///
 /// - `smallest`: if one patch needs doubles, all patches take them.
 /// - Pixels: so do whole patches beside cut ones that need them.
@@ -222,28 +222,29 @@ struct MeshChange {
 /// - All bounds hold between the mesh and the kept part, in both directions; those of pixels and angles too.
 /// - With an angle, the edges along loops also turn by about that angle from one to the next; this is not proven.
 /// - Patches of one face share the vertices of their common sides; whole patches are as without loops.
-/// - Cut patches take positions from the set's double control points. They have no quads, and are not for uniform rates.
+/// - Cut patches take positions from the set's double control points. They have no quads, and are not for uniform
+///   rates.
 ///
-/// Edges of shapes (see Shape): all faces along an edge get vertices at the same parameters of the edge, and these have one
-/// position. So the mesh of a closed shell has no open edges at any tolerance, and an open shell's are its own borders.
+/// Edges of shapes (see Shape): all faces along an edge get vertices at the same parameters of the edge, and these have
+/// one position. So the mesh of a closed shell has no open edges at any tolerance, and those of an open shell are its
+/// borders.
 ///
 /// - A vertex of several faces stands in the middle of the box of their points. How far it leaves a face is no part of
 ///   bound(); see gap() and edge_gaps(). A file whose faces are farther apart than the tolerance is meshed, and closed.
 /// - Chords of trimmed faces end at common parameters. A whole patch keeps its even borders: where it needs a vertex
 ///   more, one triangle becomes a fan.
 /// - Borders along such edges are joined by them, not by welding.
-/// - Not closed: edges that no second face uses, and those wider than TessellationOptions::max_gap.
-/// - Vertices that are shared by index: with cut patches or edges, all that are at one place when the topology is made,
-///   and have one normal if the mesh has any.
-/// - A crease angle joins normals vertex by vertex there, those of each vertex that lie within the angle.
+/// - Not closed: edges of one face, edges wider than TessellationOptions::max_gap, faces in crossed_patches() or
+///   PatchSet::trim_faults(), loops that leave the domain or name no edges, patches that are curves, meshes with rates.
+/// - Sets with edges or cut patches: share_vertices makes one of all vertices at one position (and of one normal, if
+///   there are normals), of touching bodies too. A crease angle joins normals vertex by vertex.
 ///
 /// Layout of the vertices, patch after patch. Tolerances: the inner points `[iu - 1][iv - 1]`, then the border points
 /// counter-clockwise from (0,0), each corner once; shared points that belong to another patch are left out. Rates: all
 /// points `[iu][iv]`, so vertex (patch * (rates.u + 1) + iu) * (rates.v + 1) + iv. Cut patches: in no stated order.
 /// Vertices that edges add to a whole patch follow its own.
 ///
-/// Edits: a set with cut patches or edges is planned and written anew by each update; loops stay where they are in the
-/// parameters. Its topology changes as rarely as that of others.
+/// Edits: an update plans and writes all of a set with cut patches or edges anew; loops stay as they are.
 ///
 /// Threads: any number of const calls; an update excludes every other call.
 ///
@@ -296,7 +297,8 @@ class Tessellation {
   /// every point of the mesh lies within bound() + gap() of a face, and the other way round. 0 without edges.
   double gap() const;
   /// Returns the largest such distance along each edge: of the first instance's shape, then the next; see
-  /// Model::instances. 0 where faces meet. Empty without edges.
+  /// Model::instances. About 0 where faces meet; of edges that max_gap leaves open, half of their faces' distance.
+  /// Empty if no loop of the set names edges.
   std::span<const float> edge_gaps() const;
   /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
   /// and those made points.
@@ -318,9 +320,10 @@ class Tessellation {
   /// does not keep the set itself: a run on another set of equal shape (patch count, degrees and collapsed borders)
   /// writes that set's mesh, relative to that set's origin, for which nothing is proven.
   ///
-  /// Errors: buffer_too_small, stale (another number of patches, other degrees, collapsed borders or loops), unsupported (a
-  /// set without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are shared
-  /// everywhere; a view of quads if the plan has none), cancelled. Nothing is written on any error but cancelled.
+  /// Errors: buffer_too_small, stale (another number of patches, other degrees, collapsed borders or loops),
+  /// unsupported (a set without float Bernstein blocks), invalid_argument (views; a view of normals where vertices are
+  /// shared everywhere; a view of quads if the plan has none), cancelled. Nothing is written on any error but
+  /// cancelled.
   ///
   /// The bytes are the same for any number of threads, and on every instruction set that fuses multiply-adds; border
   /// positions are the same on all. Packed views (three floats per record) of large meshes are written past the caches
@@ -344,7 +347,7 @@ class Tessellation {
   /// Errors, with nothing written and the set unchanged:
   /// - buffer_too_small, count_mismatch (views of fewer or more vertices: of a mesh of another topology)
   /// - invalid_argument (views; index = the edit: no such patch, or one that an edit before names)
-  /// - count_mismatch (points), stale (another set), unsupported (a set with cut patches)
+  /// - count_mismatch (points), stale (another set)
   /// - non_finite (index = the edit: a point is not finite, or does not fit the set's numbers relative to its origin)
   ///
   /// Errors after the set was edited:

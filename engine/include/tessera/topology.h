@@ -15,9 +15,9 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Checks all ids of a model, of vertices, edges, faces, solids, shapes, and the surfaces of instances; positions, ranges
-/// and tolerances must be finite. Each loop must have one coedge per curve, or none. Calls below may be made after this
-/// check succeeds.
+/// Checks all ids of a model, of vertices, edges, faces, solids, shapes, and the surfaces of instances; positions,
+/// ranges and tolerances must be finite. Each loop must have one coedge per curve, or none. Calls below may be made
+/// after this check succeeds.
 ///
 /// Errors: invalid_argument, as "shape 2 (nut): edge 7 ends at vertex 12, there are 12 vertices" (index = the shape or
 /// instance).
@@ -28,8 +28,8 @@ Status check_topology(const Shape& shape);
 /// Returns the faces of all instances in the model's space, one instance after the other: what Model::surfaces holds if
 /// there are instances.
 ///
-/// Errors: invalid_argument (an instance of no shape; index = the instance). Memory: each face shares geometry, loops and
-/// name with its shape.
+/// Errors: invalid_argument (an instance of no shape; index = the instance). Memory: each face shares geometry, loops
+/// and name with its shape.
 Result<std::vector<ModelSurface>> placed_faces(std::span<const Shape> shapes, std::span<const Instance> instances);
 
 /// Returns the loops that name the edges of a face: its trims, or its outline if it has no trims.
@@ -57,14 +57,14 @@ struct EdgeUses {
 /// Lists the coedges of each edge. Requires a shape that passes check_topology(). Errors: out_of_memory.
 Result<EdgeUses> edge_uses(const Shape& shape);
 
-/// Tells for each shell whether it is closed: each edge of its faces, save degenerate ones, has an even number of coedges
-/// in them. A shell without faces, or with a face that names no edges, is not. Requires as edge_uses().
+/// Tells for each shell whether it is closed: each edge of its faces, save degenerate ones, has an even number of
+/// coedges in them. A shell without faces, or with a face that names no edges, is not. Requires as edge_uses().
 /// Errors: out_of_memory.
 Result<std::vector<bool>> closed_shells(const Shape& shape);
 
 /// Measures for each edge the largest distance of two faces' points at equal parameters of the edge, at both ends and
-/// `samples` - 2 parameters evenly between. 0 for an edge of one coedge. A measurement, not a bound; lengths are those of
-/// the shape's space. Requires as edge_uses().
+/// `samples` - 2 parameters evenly between. 0 for an edge of one coedge. A measurement, not a bound; lengths are those
+/// of the shape's space. Requires as edge_uses().
 ///
 /// Errors: invalid_argument (fewer than two samples), those of evaluate_jet().
 Result<std::vector<double>> edge_gaps(const Shape& shape, int samples = 9);

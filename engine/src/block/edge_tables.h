@@ -21,8 +21,8 @@ struct FollowingLine {
   bool turned;      ///< whether it runs against s
 };
 
-/// Returns the parameter of the nearest point of `follower` by s, monotone, as Coedge::parameter states it: fractions of
-/// linear functions, each through the nearest points of both ends and the middle of its range. Points at equal s are
+/// Returns the parameter of the nearest point of `follower` by s, monotone, as Coedge::parameter states it: fractions
+/// of linear functions, each through the nearest points of both ends and the middle of its range. Points at equal s are
 /// apart by at most `slack` more than nearest ones, as sampled, unless that takes more than 1,024 pieces per piece of
 /// the start, or nearest points run back. Empty if t = s, or t = from + to - s, is as good.
 std::optional<Curve> following_parameter(const LeadingLine& leader, const FollowingLine& follower, double slack);

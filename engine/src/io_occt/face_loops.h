@@ -26,8 +26,8 @@ struct FaceLoops {
   std::vector<TrimLoop> loops;
   bool whole = false;  ///< one loop runs along all sides of the box, and trims nothing
 };
-/// The loops of the face in our parameters, with coedges of `edges`. Errors: unsupported (an edge without a curve in the
-/// parameters), those of trim_curve. May throw Standard_Failure.
+/// The loops of the face in our parameters, with coedges of `edges`. Errors: unsupported (an edge without a curve in
+/// the parameters), those of trim_curve. May throw Standard_Failure.
 Result<FaceLoops> face_loops(const TopoDS_Face& face, const FaceBox& box, const Reparametrization& parameters,
                              const ShapeEdges& edges);
 

@@ -156,8 +156,8 @@ class LoopRepair {
       tell(k, LoopFault::outside, size, "it leaves the surface's domain by " + text(size) + " and is cut off there");
   }
 
-  /// Moves pieces that lie hardly outside onto the side there: domains are often the boxes of loops, up to the digits of
-  /// a file. So they remain parts of their curves.
+  /// Moves pieces that lie hardly outside onto the side there: domains are often the boxes of loops, up to the digits
+  /// of a file. So they remain parts of their curves.
   static void move_inside(std::vector<TrimPiece>& pieces, const CutAxis& axis, Coordinate x) {
     if (axis.periodic) return;
     const double most = 0x1p-13 * axis.period();

@@ -17,8 +17,8 @@ inline constexpr std::string_view damaged_model = "a damaged model";
 /// Converts a model to bytes. Its surfaces must be B-splines; any other kind gives an internal error. With instances,
 /// the bytes hold the shapes instead of the model's surfaces.
 std::string to_bytes(const Result<Model>& model);
-/// Restores the model, bit for bit but for surfaces of instances, which are placed anew. Checks all ids. Errors: the one
-/// that was written; internal (these are not bytes of to_bytes; the message begins with damaged_model); unsupported
+/// Restores the model, bit for bit but for surfaces of instances, which are placed anew. Checks all ids. Errors: the
+/// one that was written; internal (these are not bytes of to_bytes; the message begins with damaged_model); unsupported
 /// (instances of more than four million faces).
 Result<Model> model_from_bytes(std::string_view bytes);
 

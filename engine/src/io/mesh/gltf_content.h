@@ -42,8 +42,8 @@ class GltfContent {
   /// Adds the vertices of a mesh: positions, normals of unit length, parameters. Its primitives come next, before
   /// another mesh.
   void add_vertices(const Mesh& mesh);
-  /// Adds a primitive without a material: triangles of the mesh whose vertices were added last. It refers to the vertices
-  /// from `first` on, `count` of them, so primitives may share vertices and none is stored twice.
+  /// Adds a primitive without a material: triangles of the mesh whose vertices were added last. It refers to the
+  /// vertices from `first` on, `count` of them, so primitives may share vertices and none is stored twice.
   tinygltf::Primitive add_primitive(std::span<const std::uint32_t> indices, std::size_t first, std::size_t count);
 
   tinygltf::Model take() && { return std::move(model_); }

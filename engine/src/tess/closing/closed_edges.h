@@ -1,9 +1,10 @@
 #pragma once
 // Closes the mesh of a shape along its edges: all faces get the same vertices there.
 //
-// Proof that the mesh is closed: along an edge, the boundaries of all its faces have vertices at the same parameters, and
-// those of one parameter get one position. So each segment belongs to as many triangles as the edge has coedges, whatever
-// the positions are. Triangles two of whose corners are one position drop out together with their sides, in pairs.
+// Proof that the mesh is closed: along an edge, the boundaries of all its faces have vertices at the same parameters,
+// and those of one parameter get one position. So each segment belongs to as many triangles as the edge has coedges,
+// whatever the positions are. Triangles two of whose corners are one position drop out together with their sides, in
+// pairs.
 
 #include <cstdint>
 #include <limits>
@@ -35,9 +36,10 @@ struct ClosedEdges {
   std::int64_t closed_segments = 0;
 };
 
-/// Finds the vertices of all edges, and inserts those that patches lack: into `cuts`, and as edits into others. Distances
-/// of cut patches are extended to their new triangles, by `chord` of the patch. Edges with gaps above `max_gap` stay open. `is_joined`: by 4 * patch + side, whether
-/// triangles of another patch have the same border anyway.
+/// Finds the vertices of all edges, and inserts those that patches lack: into `cuts`, and as edits into others.
+/// Distances of cut patches are extended to their new triangles, by `chord` of the patch. Edges with gaps above
+/// `max_gap` stay open. `is_joined`: by 4 * patch + side, whether triangles of another patch have the same border
+/// anyway.
 ClosedEdges close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
                         std::span<CutPatch> cuts, double max_gap, std::span<const std::uint8_t> is_joined,
                         FunctionRef<ChordBound(std::uint32_t patch)> chord);

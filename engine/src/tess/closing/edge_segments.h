@@ -41,7 +41,8 @@ struct EdgeSegment {
 /// The segments of all edges of a set, and the vertices that they need at the ends of edges.
 class [[gnu::visibility("hidden")]] EdgeSegments {
  public:
-  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut. All must outlive this object.
+  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut. All must outlive this
+  /// object.
   EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
                std::span<const CutPatch> cuts);
 

@@ -28,8 +28,8 @@ struct PatchEdit {
 /// - `inserted`: of this patch, those of one segment together and by growing `at`. The k-th becomes vertex first + k.
 /// - `triangles`: changed in place; new ones are appended.
 ///
-/// Returns the triangles that were changed, without new ones. Vertices in segments that no triangle has as a side belong
-/// to none.
+/// Returns the triangles that were changed, without new ones. Vertices in segments that no triangle has as a side
+/// belong to none.
 std::vector<std::uint32_t> insert_vertices(std::span<const InsertedVertex> inserted, std::uint32_t first,
                                            std::vector<CutPatch::Triangle>& triangles);
 

@@ -42,8 +42,8 @@ struct EdgePlace {
 
 using Lanes = std::array<float, PatchSet::lanes>;
 
-/// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed corners'
-/// difference. Loops over lanes are plain enough to be vectorized.
+/// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed
+/// corners' difference. Loops over lanes are plain enough to be vectorized.
 float shortest_side(const PatchSet::Impl& set, std::size_t block) {
   const BlockGroup& group = set.group_of_block(block);
   const float* const net =

@@ -55,8 +55,8 @@ Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner);
 struct WeldRules {
   static constexpr double point_share = 0x1p-18;  ///< above the rounding of numbers of six digits
   double reach = 0;  ///< the largest distance of borders that are joined; finite, at least 0
-  /// Whether borders must also be eight times as long as they are apart, and only edges with a single border are joined:
-  /// strips thinner than the reach stay between their neighbours.
+  /// Whether borders must also be eight times as long as they are apart, and only edges with a single border are
+  /// joined: strips thinner than the reach stay between their neighbours.
   bool is_relative = false;
   /// `[patch]`: 1 if its vertices come from double control points; empty if no patch's do. These give their points to
   /// all other borders of their edges, and to all other corners that meet there: the packed control points are the same
@@ -75,9 +75,10 @@ struct WeldRules {
 /// - Corners that meet at any of these edges become one, that with the least coordinates.
 /// - Borders and corners whose vertices come from doubles come before all others, so that these are moved to them.
 ///
-/// The choice of borders to join, and of the one that moves, depends on their control points and on WeldRules alone: not
-/// on others that are farther away, nor on the order of patches. The set must have float Bernstein blocks. `shapes` and `roundings`
-/// (of vertices) are those of its patches. Returns nothing to copy, and no shapes, if nothing is welded.
+/// The choice of borders to join, and of the one that moves, depends on their control points and on WeldRules alone:
+/// not on others that are farther away, nor on the order of patches. The set must have float Bernstein blocks. `shapes`
+/// and `roundings` (of vertices) are those of its patches. Returns nothing to copy, and no shapes, if nothing is
+/// welded.
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   const WeldRules& rules, SharedEdges& edges);
 

@@ -96,8 +96,8 @@ Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, co
   return change;
 }
 
-// Loops and edges of shapes tie patches to others far away, so everything is planned and written anew. Patches keep their
-// segments where these suffice, so small edits keep the triangles.
+// Loops and edges of shapes tie patches to others far away, so everything is planned and written anew. Patches keep
+// their segments where these suffice, so small edits keep the triangles.
 Result<MeshChange> ProvenMesh::update_anew(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                            const Execution& execution) {
   PatchSet::Impl& inner = impl_of(set);

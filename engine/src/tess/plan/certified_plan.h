@@ -159,8 +159,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
   const SharedEdges& edges() const { return edges_; }  ///< after welding
-  /// The share of the tolerance that the rounding of vertices from float control points may take. It costs up to a third
-  /// more triangles, and doubles take five times as long.
+  /// The share of the tolerance that the rounding of vertices from float control points may take. It costs up to a
+  /// third more triangles, and doubles take five times as long.
   static constexpr double max_rounding = 0.25;
   /// Returns PlannerOptions::f64_patches of the patches where the rounding of vertices from float control points takes
   /// more than max_rounding, or all that pixels leave.

@@ -28,8 +28,8 @@ Status CertifiedPlanner::find_stops(const Request& request, const CertifiedPlan&
   return parallel_for(set_->edges->edges.size(), edges_per_task, {.cancel = execution.cancel}, find);
 }
 
-// Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then patches are
-// cut anew for less.
+// Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then patches
+// are cut anew for less.
 Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   constexpr int max_attempts = 6;
   Request cut = request;

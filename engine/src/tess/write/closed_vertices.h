@@ -10,7 +10,8 @@
 namespace tessera::inline abi_0_1 {
 
 /// Writes vertices and triangles that are inserted into whole patches, then the common positions of all vertices along
-/// edges, and common normals where these lie within `crease_angle`. All patches must have been written. Errors: cancelled.
+/// edges, and common normals where these lie within `crease_angle`. All patches must have been written. Errors:
+/// cancelled.
 Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
                     const MeshViews& out, const Execution& execution);
 
