@@ -16,6 +16,7 @@
 #include "standard_input.h"
 #include "tessera/cad.h"
 #include "tessera/io.h"
+#include "topology_facts.h"
 
 namespace tessera::cli {
 namespace {
@@ -225,7 +226,12 @@ Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t
   packing.trims = !options.untrimmed;
   FitOptions fit = options.fit;
   if (stretch > 0) fit.tolerance /= stretch;
-  return with_places(loaded, first_surface, make_patch_set(loaded.model.shapes[shape], packing, fit));
+  // Files may leave it to their readers to find which edges are the same. Where that fails, faces stay unconnected.
+  const Shape& stated = loaded.model.shapes[shape];
+  const Result<std::optional<JoinedShape>> joined =
+      packing.trims ? joined_if_free(stated) : Result<std::optional<JoinedShape>>(std::optional<JoinedShape>());
+  const Shape& used = joined && *joined ? (*joined)->shape : stated;
+  return with_places(loaded, first_surface, make_patch_set(used, packing, fit));
 }
 
 Json files_json(const Loaded& loaded) {

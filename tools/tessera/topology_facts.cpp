@@ -86,6 +86,19 @@ Result<TopologyFacts> count_topology(const Model& model) {
   return facts;
 }
 
+Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape) {
+  if (shape.faces.size() > max_joined_faces) return std::optional<JoinedShape>();
+  const Result<bool> is_open = has_free_edges(shape);
+  if (!is_open) return is_open.status();
+  if (!*is_open) return std::optional<JoinedShape>();
+  const Result<double> distance = joining_distance(shape);
+  if (!distance) return distance.status();
+  if (!(*distance > 0)) return std::optional<JoinedShape>();
+  Result<Shape> made = joined_edges(shape, *distance);
+  if (!made) return made.status();
+  return std::optional<JoinedShape>({*std::move(made), *distance});
+}
+
 Result<std::optional<JoinedFacts>> count_joined(const Model& model) {
   if (model.surfaces.size() > max_joined_faces) return std::optional<JoinedFacts>();
   Model joined;
@@ -95,16 +108,11 @@ Result<std::optional<JoinedFacts>> count_joined(const Model& model) {
   double largest = 0;
   bool any = false;
   for (Shape& shape : joined.shapes) {
-    const Result<bool> is_open = has_free_edges(shape);
-    if (!is_open) return is_open.status();
-    if (!*is_open) continue;
-    const Result<double> distance = joining_distance(shape);
-    if (!distance) return distance.status();
-    if (!(*distance > 0)) continue;
-    Result<Shape> made = joined_edges(shape, *distance);
+    Result<std::optional<JoinedShape>> made = joined_if_free(shape);
     if (!made) return made.status();
-    shape = *std::move(made);
-    largest = std::max(largest, *distance);
+    if (!*made) continue;
+    shape = std::move((*made)->shape);
+    largest = std::max(largest, (*made)->distance);
     any = true;
   }
   if (!any) return std::optional<JoinedFacts>();

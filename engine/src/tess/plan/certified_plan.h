@@ -277,6 +277,15 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// of the room.
   Status choose_cut(const Request& request, std::span<const double> shares, std::span<const double> excess,
                     CertifiedPlan& plan) const;
+  /// What all patches need that are cut in one pass. `is_shared`: by edge, whether two borders or more have it.
+  struct CutPass {
+    const Request& request;
+    const EdgeStops& stops;
+    std::span<const std::uint8_t> is_shared;
+  };
+  std::vector<std::uint8_t> shared_edges() const;
+  /// Cuts a patch, place `c` among the cuts, and sets its bounds. Returns the largest over its limit.
+  double cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker, CertifiedPlan& plan) const;
   /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds.
   Status divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.

@@ -135,6 +135,33 @@ Status CertifiedPlanner::choose_cut(const Request& request, std::span<const doub
   return {};
 }
 
+std::vector<std::uint8_t> CertifiedPlanner::shared_edges() const {
+  std::vector<std::uint8_t> borders(edges_.count(), 0);
+  for (const std::uint32_t edge : edges_.of_borders())
+    if (edge != SharedEdges::none) borders[edge] += borders[edge] < 2;
+  for (std::uint8_t& count : borders) count = count == 2;
+  return borders;
+}
+
+double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker,
+                                   CertifiedPlan& plan) const {
+  const PatchTrims::Cut& cut = set_->trims->cuts[c];
+  CutRoom room = room_of(plan.rare_->cuts[c], pass.request, plan);
+  for (const Side side : all_sides) {
+    const std::uint32_t edge = edges_.edge(cut.patch, side);
+    room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && pass.is_shared[edge];
+  }
+  std::vector<double> list;
+  const auto stops_of = [&](std::span<const TrimPiece> chain) {
+    return pass.stops.list(*runs_, cut_faces_[c], chain, list);
+  };
+  if (runs_ && cut_faces_[c] != no_id) room.limits.stops = stops_of;
+  maker.make(set_->trims->regions[cut.region], face_sides_[cut.region], cut, room.limits,
+             plan.divisions_[cut.patch].border, divided_shapes()[cut.patch].collapsed, chord(cut.patch),
+             plan.rare_->cuts[c]);
+  return bound_cut(room, plan.rare_->cuts[c], plan);
+}
+
 Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
   if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
@@ -143,9 +170,7 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   plan.rare_->crossed.clear();
   for (std::size_t c = 0; c < cuts.size(); ++c) plan.rare_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
-  std::vector<std::uint8_t> borders(edges_.count(), 0);
-  for (const std::uint32_t edge : edges_.of_borders())
-    if (edge != SharedEdges::none) borders[edge] += borders[edge] < 2;
+  const std::vector<std::uint8_t> is_shared = shared_edges();
   std::vector<double> shares(cuts.size(), cell_share * request.cut_share), excess(cuts.size(), 2);
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
@@ -157,23 +182,9 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
       if (Status status = find_stops(request, plan, stops, execution); !status.ok()) return status;
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
-      std::vector<double> list;
-      for (std::size_t c = begin; c < end; ++c) {
-        const std::size_t k = cuts[c].patch;
-        if (excess[c] <= 1 && before[k] == plan.divisions_[k]) continue;
-        CutRoom room = room_of(plan.rare_->cuts[c], request, plan);
-        for (const Side side : all_sides) {
-          const std::uint32_t edge = edges_.edge(k, side);
-          room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && borders[edge] == 2;
-        }
-        const auto stops_of = [&](std::span<const TrimPiece> chain) {
-          return stops.list(*runs_, cut_faces_[c], chain, list);
-        };
-        if (runs_ && cut_faces_[c] != no_id) room.limits.stops = stops_of;
-        maker.make(set_->trims->regions[cuts[c].region], face_sides_[cuts[c].region], cuts[c], room.limits,
-                   plan.divisions_[k].border, divided_shapes()[k].collapsed, chord(k), plan.rare_->cuts[c]);
-        excess[c] = bound_cut(room, plan.rare_->cuts[c], plan);
-      }
+      for (std::size_t c = begin; c < end; ++c)
+        if (excess[c] > 1 || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
+          excess[c] = cut_patch(c, {request, stops, is_shared}, maker, plan);
     };
     const Execution quiet{.cancel = execution.cancel};
     if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
