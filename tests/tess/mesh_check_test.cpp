@@ -92,8 +92,8 @@ TEST(MeshCheck, InconsistentEdges) {
 TEST(MeshCheck, DegenerateTrianglesAndTheirEdges) {
   Mesh mesh = tetrahedron();
   mesh.positions.insert(mesh.positions.end(), {0, 0, 0, 0.5, 0, 0, 2, 0, 0});
-  mesh.indices.insert(mesh.indices.end(), {0, 0, 1});  // one vertex twice
-  mesh.indices.insert(mesh.indices.end(), {0, 4, 1});  // two vertices in one place
+  mesh.indices.insert(mesh.indices.end(), {0, 0, 1});           // one vertex twice
+  mesh.indices.insert(mesh.indices.end(), {0, 4, 1});           // two vertices in one place
   mesh.indices.insert(mesh.indices.end(), {0, 5, 6, 6, 5, 0});  // on one line, both ways
   const MeshReport report = report_of(mesh);
   EXPECT_EQ(report.degenerate_triangles, 4u);

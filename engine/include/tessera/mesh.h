@@ -98,7 +98,7 @@ struct MeshReport {
   /// Two corners in one place, or no area. Edges of the former are not counted above; those of the latter are, because
   /// a triangle that is a line closes the gap between one edge and two.
   std::size_t degenerate_triangles = 0;
-  std::size_t non_finite_vertices = 0;   ///< NaN or infinity in a position or a normal
+  std::size_t non_finite_vertices = 0;  ///< NaN or infinity in a position or a normal
   /// Whether there are non-degenerate triangles, and they leave no border.
   bool closed() const { return triangles > degenerate_triangles && open_edges == 0 && non_manifold_edges == 0; }
 };

@@ -57,8 +57,8 @@ class FaceTrimsFinder {
     bool is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid, const TrimOptions& other) const {
       const CutLines& lines = impl_of(trims.region).lines;
       return options.periodic_u == other.periodic_u && options.periodic_v == other.periodic_v &&
-             options.snap == other.snap &&
-             std::ranges::equal(lines.u.lines, grid.breaks_u()) && std::ranges::equal(lines.v.lines, grid.breaks_v()) &&
+             options.snap == other.snap && std::ranges::equal(lines.u.lines, grid.breaks_u()) &&
+             std::ranges::equal(lines.v.lines, grid.breaks_v()) &&
              std::ranges::equal(*loops, others, [](const TrimLoop& a, const TrimLoop& b) {
                return a.hole == b.hole && a.curves == b.curves;
              });

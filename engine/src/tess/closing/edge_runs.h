@@ -53,7 +53,7 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   void add_face(const PatchSet::Impl& set, std::uint32_t face);
   /// Finds the patch and the side of a run along a line between patches. `sides`: those of the face, once they are
   /// known.
-  void find_side(EdgeRun& run, bool along_u, std::optional<FaceSides>& sides) const;
+  void find_side(EdgeRun & run, bool along_u, std::optional<FaceSides>& sides) const;
   void sort();
 
   const PatchEdges* edges_;

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
-#include "tess/edges/side_curve.h"
 #include "base/union_find.h"
+#include "tess/edges/side_curve.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {

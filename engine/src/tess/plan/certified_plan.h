@@ -293,7 +293,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The error of a tolerance that loops cannot keep.
   Status too_rough(const Request& request, std::size_t patch) const;
   /// Finds the borders of whole patches along the sides of cut ones.
-  void find_same_borders(CertifiedPlan& plan) const;
+  void find_same_borders(CertifiedPlan & plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,

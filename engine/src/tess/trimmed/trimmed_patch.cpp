@@ -79,7 +79,7 @@ bool PatchCutter::continues(const ParameterPoint& start, const TrimPiece& before
 }
 
 std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span<const std::uint32_t> indices) {
-  const std::size_t before = chords_.size();
+  std::size_t chord_count = 0;
   for (std::size_t k = 0; k < indices.size();) {
     const std::size_t first = indices[k];
     std::size_t count = 1;
@@ -95,13 +95,14 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
                               : chords_of_pieces_.append(chain, limits_, points_, parameters_);
     sliver_ = std::max(sliver_, sliver);
     for (std::size_t n = 0; last + 1 < points_.size(); ++last, ++n) {
+      chord_count += !(points_[last] == points_[last + 1]);
       chords_.push_back({last, last + 1});
       marks_.push_back(static_cast<std::uint32_t>(loop_chords_.size()));
       loop_chords_.push_back({static_cast<std::uint32_t>(first), last, last + 1, parameters_[n], parameters_[n + 1],
                               pieces[first].curve_index != TrimPiece::none});
     }
   }
-  return chords_.size() - before;
+  return chord_count;
 }
 
 bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_, marks_) && cut(); }
