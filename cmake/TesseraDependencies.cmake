@@ -12,6 +12,7 @@
 #   libpng            libpng-dev 1.6              the command line and the benchmarks: pictures
 #   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers); bench: two reports
+#   assimp            libassimp-dev 5.2           tests: another reader of glTF; skipped without
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
 #   valgrind          valgrind 3.19               tests: instructions counted (tools/perf count), skipped without
 #   Python            python3 3.11                tools/perf and its tests, its standard library alone; skipped without

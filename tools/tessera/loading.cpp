@@ -110,6 +110,7 @@ Status add_file(const std::string& file, const ModelOptions& options, With with,
     loaded.model = *std::move(model);
   else
     append(loaded.model, *std::move(model));
+  if (!loaded.all_have_shapes) loaded.model.shapes.clear(), loaded.model.instances.clear();  // they would not be all
   return {};
 }
 
