@@ -66,7 +66,7 @@ TEST_F(CommonOptions, ThePictureIsTheSameForAnyNumberOfThreads) {
 
 TEST_F(CommonOptions, TimingsAreToldOnRequest) {
   const std::vector<std::pair<Names, Names>> commands{
-      {{"info", teapot}, {"read", "convert", "pack", "joins"}},
+      {{"info", teapot}, {"read", "convert", "pack", "joined edges", "joins"}},
       {{"eval", teapot, "--grid", "2x2", "-o", "a.csv"}, {"read", "evaluate"}},
       {{"tessellate", teapot, "--grid", "2x2", "-o", "a.ply"}, {"read", "convert", "pack", "evaluate", "write"}},
       {{"raycast", teapot, "--size", "16x16", "-o", "a.png"},

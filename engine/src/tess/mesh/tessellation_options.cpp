@@ -26,6 +26,20 @@ double at_most_max_weld(double weld, const PatchSet& set) {
   return max_weld * box.diagonal();
 }
 
+/// Checks how borders and edges are joined.
+Status check_joining(const TessellationOptions& options, const PatchSet& set) {
+  const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
+  const double weld = options.weld.value_or(0);
+  if (!(weld >= 0 && std::isfinite(weld)))
+    return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
+  if (weld > 0 && weld > at_most_max_weld(weld, set))
+    return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " +
+               text(set.box().diagonal()));
+  if (options.max_gap && !(*options.max_gap >= 0))
+    return bad("the largest gap is " + text(*options.max_gap) + ", it must be at least 0");
+  return {};
+}
+
 }  // namespace
 
 Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set) {
@@ -44,21 +58,14 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
                std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
-  const double weld = options.weld.value_or(0);
-  if (!(weld >= 0 && std::isfinite(weld)))
-    return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
-  if (weld > 0 && weld > at_most_max_weld(weld, set))
-    return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " +
-               text(set.box().diagonal()));
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
     return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
-  if (options.max_gap && !(*options.max_gap >= 0))
-    return bad("the largest gap is " + text(*options.max_gap) + ", it must be at least 0");
+  if (Status status = check_joining(options, set); !status.ok()) return status;
   PlannerOptions planner;
   planner.closes_edges = options.close_edges;
   planner.max_gap = options.max_gap.value_or(std::numeric_limits<double>::infinity());
   if (options.weld) {
-    planner.weld.reach = weld;
+    planner.weld.reach = *options.weld;
   } else if (options.tolerance && !options.relative) {
     planner.weld = {at_most_max_weld(*options.tolerance / 8, set), true};
   } else {

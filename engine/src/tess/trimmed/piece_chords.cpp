@@ -85,18 +85,16 @@ double PieceChords::append(std::span<const TrimPiece> chain, const ChordStops& s
       rest = std::move(after);
     }
     begin_chords(limits, points, parameters);
-    if (!ends && begin < end) {
+    if (ends) {
+      append_one(rest, inside.subspan(begin));
+    } else if (begin < end) {
       const double last = place(inside[end - 1]);
       TrimPiece after = divide_at(rest, (last - at) / (1 - at));
       append_one(rest, inside.subspan(begin, end - 1 - begin));
-      most = std::max(most, most_);
-      parts_.push_back(std::move(after));
-    } else if (ends) {
-      append_one(rest, inside.subspan(begin));
-      most = std::max(most, most_);
-    } else {
-      parts_.push_back(std::move(rest));
+      rest = std::move(after);
     }
+    if (!ends) parts_.push_back(std::move(rest));
+    most = std::max(most, most_);
   }
   end_parts();
   return most;
