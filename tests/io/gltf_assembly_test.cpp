@@ -2,7 +2,6 @@
 // library's own.
 
 #include <gtest/gtest.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "io/gltf_file.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
@@ -42,14 +42,7 @@ class GltfAssembly : public testing::TestWithParam<const char*> {
   tinygltf::Model written(const MeshAssembly& assembly) const {
     const Status status = write_assembly(assembly, path());
     EXPECT_TRUE(status.ok()) << status.message();
-    tinygltf::Model model;
-    std::string error, warning;
-    tinygltf::TinyGLTF reader;
-    const bool read = path().ends_with(".glb") ? reader.LoadBinaryFromFile(&model, &error, &warning, path())
-                                               : reader.LoadASCIIFromFile(&model, &error, &warning, path());
-    EXPECT_TRUE(read) << error;
-    EXPECT_EQ(error + warning, "");
-    return model;
+    return read_gltf(path());
   }
 
   ScratchFolder folder_;

@@ -2,7 +2,6 @@
 // (sections 3.6 and 3.7: alignment, ranges, boxes of positions, unit normals).
 
 #include <gtest/gtest.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/gltf_file.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
@@ -31,14 +31,7 @@ class Gltf : public testing::TestWithParam<const char*> {
   tinygltf::Model written(const Mesh& mesh) const {
     const Status status = write_mesh(mesh, path());
     EXPECT_TRUE(status.ok()) << status.message();
-    tinygltf::Model model;
-    std::string error, warning;
-    tinygltf::TinyGLTF reader;
-    const bool read = path().ends_with(".glb") ? reader.LoadBinaryFromFile(&model, &error, &warning, path())
-                                               : reader.LoadASCIIFromFile(&model, &error, &warning, path());
-    EXPECT_TRUE(read) << error;
-    EXPECT_EQ(error + warning, "");
-    return model;
+    return read_gltf(path());
   }
 
   ScratchFolder folder_;
