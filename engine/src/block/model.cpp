@@ -249,7 +249,7 @@ class ModelPatches {
       } else {
         all_.add_kept(k, grid, **trims);
       }
-      if (trims && named.face) add_edges(k, named.first_edge, *loops, **trims, first, places);
+      if (trims && named.face) add_edges(named.first_edge, *loops, **trims, first, places);
     }
     ends_.push_back(all_.patches.size());
     return {};
@@ -272,11 +272,11 @@ class ModelPatches {
   };
 
   /// Notes the patches of a face whose loops name edges. `first`: its first patch.
-  void add_edges(std::size_t surface, std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops,
-                 const FaceTrims& trims, std::size_t first, std::size_t places) {
+  void add_edges(std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops, const FaceTrims& trims,
+                 std::size_t first, std::size_t places) {
     const auto names = [](const TrimLoop& loop) { return !loop.coedges.empty(); };
     if (std::ranges::none_of(*loops, names)) return;
-    PatchEdges::Face face{static_cast<std::uint32_t>(surface), first_edge, loops, trims.region, {}};
+    PatchEdges::Face face{first_edge, loops, trims.region, {}};
     face.patches.assign(places, no_id);
     const bool is_whole = all_.patches.size() - first == places;
     for (std::size_t place = 0; place < places; ++place)

@@ -21,7 +21,6 @@ struct PatchEdges {
   };
   /// A face whose loops name edges.
   struct Face {
-    std::uint32_t surface;                ///< PatchSource::surface
     std::uint32_t first_edge;             ///< what its coedges count from, in `edges`
     Shared<std::vector<TrimLoop>> loops;  ///< in the parameters of its patches: trims, or the outline
     TrimRegion region;                    ///< of the loops, made for patches

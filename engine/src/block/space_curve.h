@@ -46,7 +46,7 @@ class SpaceCurve {
   /// The nearest point of the curve between two parameters, by Newton's method from the nearest chord; 5 to 10
   /// evaluations.
   Nearest nearest(const Vec3& p, const Interval& within) const;
-  /// As above, from a parameter near it.
+  /// Finds the nearest point by Newton's method, from a parameter near it.
   Nearest nearest_from(const Vec3& p, double t, const Interval& within) const;
 
  private:
