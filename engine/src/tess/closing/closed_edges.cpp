@@ -39,10 +39,7 @@ class Closer {
  private:
   static constexpr std::uint32_t none = CutPatch::none;
 
-  CutPatch* cut_of(std::uint32_t patch) const {
-    const auto cut = std::ranges::lower_bound(cuts_, patch, {}, &CutPatch::patch);
-    return cut != cuts_.end() && cut->patch == patch ? &*cut : nullptr;
-  }
+  CutPatch* cut_of(std::uint32_t patch) const { return find_cut(cuts_, patch); }
 
   /// Gives numbers to all vertices that may lie on edges: those of rings and of cut patches, then inserted ones.
   void number_vertices() {

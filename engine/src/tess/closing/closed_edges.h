@@ -7,7 +7,6 @@
 // pairs.
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 

@@ -14,11 +14,6 @@ EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std:
                            std::span<const CutPatch> cuts)
     : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts) {}
 
-const CutPatch* EdgeSegments::cut_of(std::uint32_t patch) const {
-  const auto cut = std::ranges::lower_bound(cuts_, patch, {}, &CutPatch::patch);
-  return cut != cuts_.end() && cut->patch == patch ? &*cut : nullptr;
-}
-
 void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) {
   const std::span<const EdgeRun> runs = runs_.of(edge);
   for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {

@@ -53,7 +53,7 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   std::span<const InsertedVertex> inserted() const { return inserted_; }
   /// Inserts a vertex into a segment, at a parameter of the edge between its ends. Returns the vertex.
   PatchVertex insert(const EdgeSegment& segment, double s);
-  const CutPatch* cut_of(std::uint32_t patch) const;
+  const CutPatch* cut_of(std::uint32_t patch) const { return find_cut(cuts_, patch); }
 
  private:
   /// A vertex of a side.

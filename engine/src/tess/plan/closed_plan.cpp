@@ -19,8 +19,7 @@ Status CertifiedPlanner::find_stops(const Request& request, const CertifiedPlan&
     return plan.divisions_[patch].border[static_cast<std::size_t>(side)];
   };
   const auto limits = [&](std::uint32_t patch) {
-    const auto cut = std::ranges::lower_bound(plan.cuts(), patch, {}, &CutPatch::patch);
-    return chord_limits(room_of(*cut, request, plan).limits);
+    return chord_limits(room_of(*find_cut(plan.cuts(), patch), request, plan).limits);
   };
   const auto find = [&](std::size_t begin, std::size_t end) {
     for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, *runs_, edge, segments, limits);

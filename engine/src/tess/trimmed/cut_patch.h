@@ -1,6 +1,7 @@
 #pragma once
 // One patch that trimming loops cut, as triangles.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -70,6 +71,13 @@ struct CutPatch {
   /// Extends `distance` and `widest` to a triangle.
   void measure(const Triangle& triangle, const ChordBound& chord);
 };
+
+/// Finds the record of a patch among those that are cut, by growing patch; null if it is none of them.
+template <class T>
+T* find_cut(std::span<T> cuts, std::uint32_t patch) {
+  const auto cut = std::ranges::lower_bound(cuts, patch, {}, &CutPatch::patch);
+  return cut != cuts.end() && cut->patch == patch ? &*cut : nullptr;
+}
 
 /// The sides of all patches of a face.
 struct FaceSides {
