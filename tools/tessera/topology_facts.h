@@ -25,7 +25,7 @@ inline constexpr int gap_samples = 65;  ///< of each edge
 /// Counts. Errors: those of edge_gaps().
 Result<TopologyFacts> count_topology(const Model& model);
 
-/// What becomes of a model whose edges joined_edges() joins.
+/// The facts of a model once joined_edges() has joined its edges.
 struct JoinedFacts {
   TopologyFacts topology;
   double distance = 0;  ///< within which they are joined, the largest of all shapes

@@ -1,5 +1,5 @@
 #pragma once
-// Which shapes of a file are parts, and where they stand.
+// Finds the shapes of a file that are parts, and the places where they stand.
 
 #include <opencascade/TopTools_MapOfShape.hxx>
 #include <string>

@@ -277,7 +277,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// of the room.
   Status choose_cut(const Request& request, std::span<const double> shares, std::span<const double> excess,
                     CertifiedPlan& plan) const;
-  /// What all patches need that are cut in one pass. `is_shared`: by edge, whether two borders or more have it.
+  /// The facts that all patches of one pass are cut by. `is_shared`: by edge, whether two borders or more have it.
   struct CutPass {
     const Request& request;
     const EdgeStops& stops;
