@@ -3,8 +3,8 @@
 //
 // Proof that the mesh is closed: along an edge, the boundaries of all its faces have vertices at the same parameters,
 // and those of one parameter get one position. So each segment belongs to as many triangles as the edge has coedges,
-// whatever the positions are. Triangles two of whose corners are one position drop out together with their sides, in
-// pairs.
+// whatever the positions are, if loops cover the range of the edge and the patches there have triangles. Triangles two
+// of whose corners are one position drop out together with their sides, in pairs.
 
 #include <cstdint>
 #include <span>
