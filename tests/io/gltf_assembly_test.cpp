@@ -42,7 +42,7 @@ class GltfAssembly : public testing::TestWithParam<const char*> {
   tinygltf::Model written(const MeshAssembly& assembly) const {
     const Status status = write_assembly(assembly, path());
     EXPECT_TRUE(status.ok()) << status.message();
-    return read_gltf(path());
+    return test::read_gltf(path());
   }
 
   ScratchFolder folder_;

@@ -31,7 +31,7 @@ class Gltf : public testing::TestWithParam<const char*> {
   tinygltf::Model written(const Mesh& mesh) const {
     const Status status = write_mesh(mesh, path());
     EXPECT_TRUE(status.ok()) << status.message();
-    return read_gltf(path());
+    return test::read_gltf(path());
   }
 
   ScratchFolder folder_;
