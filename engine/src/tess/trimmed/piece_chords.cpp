@@ -7,6 +7,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
+constexpr int max_depth = 20;  // of halves
+
 /// Divides a piece at x, 0 < x < 1: `piece` becomes the part before. Returns the part after it.
 TrimPiece divide_at(TrimPiece& piece, double x) {
   TrimPiece after = piece;
@@ -138,23 +140,44 @@ std::size_t PieceChords::reach(std::span<const TrimPiece> chain) const {
   return fine;
 }
 
+// A chain that turns back in u or v may have one chord only if it turns little, so that a small hole stays one.
 PieceChords::Sliver PieceChords::sliver_over(std::span<const TrimPiece> chain) const {
   const ParameterPoint start = chain.front().start(), end = chain.back().end();
   const ParameterPoint chord{end.u - start.u, end.v - start.v};
+  const auto lies_between = [](double x, double a, double b) { return std::min(a, b) <= x && x <= std::max(a, b); };
+  const auto turns_little = [&](const ParameterPoint& leg) {  // by at most 45 degrees
+    const double along = leg.u * chord.u + leg.v * chord.v, across = leg.u * chord.v - leg.v * chord.u;
+    return along > 0 && std::abs(across) <= along;
+  };
   double cross = 0, error = 0;
+  Feet feet;
+  bool turns = false;
   for (const TrimPiece& piece : chain) {
     error = std::max(error, error_of(piece));
-    for (const ParameterPoint& q : piece.curve.points)
+    ParameterPoint before = piece.start();
+    for (const ParameterPoint& q : piece.curve.points) {
       cross = std::max(cross, std::abs(chord.u * (q.v - start.v) - chord.v * (q.u - start.u)));
+      feet.along_u &= lies_between(q.v, start.v, end.v);
+      feet.along_v &= lies_between(q.u, start.u, end.u);
+      turns |= !(q == before || turns_little({q.u - before.u, q.v - before.v}));
+      before = q;
+    }
   }
-  return sliver_of(chord, cross, error);
+  if (turns && !(feet.along_u && feet.along_v)) return {};
+  return sliver_of(chord, cross, error, feet);
 }
 
-PieceChords::Sliver PieceChords::sliver_of(const ParameterPoint& chord, double cross, double error) const {
+PieceChords::Sliver PieceChords::sliver_of(const ParameterPoint& chord, double cross, double error,
+                                           const Feet& feet) const {
+  const SpeedBound& speed = limits_->speed;
   const double du = std::abs(chord.u), dv = std::abs(chord.v);
-  const double along_v = limits_->speed.v * cross / du, along_u = limits_->speed.u * cross / dv;
-  const double sliver = cross == 0 ? 0 : std::min(du > 0 ? along_v : along_u, dv > 0 ? along_u : along_v);
-  const bool is_straight = sliver <= limits_->bend * std::hypot(limits_->speed.u * du, limits_->speed.v * dv);
+  double sliver = 0;
+  if (cross > 0) {
+    sliver = speed.moved(dv, du) * cross / (du * du + dv * dv);
+    if (feet.along_v && du > 0) sliver = std::min(sliver, speed.v * cross / du);
+    if (feet.along_u && dv > 0) sliver = std::min(sliver, speed.u * cross / dv);
+  }
+  const bool is_straight = sliver <= limits_->bend * std::hypot(speed.u * du, speed.v * dv);
   const double room = std::max(limits_->sliver - error, limits_->sliver / 8);  // an error cannot be divided
   return {sliver + error, is_straight && sliver <= room && du <= limits_->box.u && dv <= limits_->box.v};
 }
@@ -200,31 +223,53 @@ void PieceChords::split(const Net& net, double x, Net& low, Net& high) const {
   }
 }
 
-// Points are kept within the box of the piece, which rounding could leave, so they never pass a line between patches.
+// The control points of both halves lie nearer to the curve than its own.
 void PieceChords::divide(const Net& net, double from, double to, int depth) {
   const std::size_t last = static_cast<std::size_t>(degree_);
   const ParameterPoint a = net[0].point(), b = net[last].point();
   const ParameterPoint chord{b.u - a.u, b.v - a.v};
+  const auto cross_of = [&](const Control& q) {
+    return std::abs(chord.u * (q.v / q.w - a.v) - chord.v * (q.u / q.w - a.u));
+  };
   double cross = 0;
-  for (std::size_t k = 1; k < last; ++k) {
-    const ParameterPoint q = net[k].point();
-    cross = std::max(cross, std::abs(chord.u * (q.v - a.v) - chord.v * (q.u - a.u)));
-  }
-  const Sliver sliver = sliver_of(chord, cross, error_);
-  if (sliver.is_fine || depth == 20) {
-    most_ = std::max(most_, sliver.size);
-    const TrimPiece& piece = *piece_;
-    const ParameterPoint at{std::clamp(piece.start().u + b.u, piece.lower_u(), piece.upper_u()),
-                            std::clamp(piece.start().v + b.v, piece.lower_v(), piece.upper_v())};
-    points_->push_back(at);
-    parameters_->push_back(piece.range.from + to * (piece.range.to - piece.range.from));
-    return;
-  }
+  for (std::size_t k = 1; k < last; ++k) cross = std::max(cross, cross_of(net[k]));
+  const double balance = this->balance(net), half = balance / (1 + balance);
+  cross *= reach_of(net, balance);
+  Sliver sliver = sliver_of(chord, cross, error_, {});
+  if (sliver.is_fine || depth == max_depth) return put(b, to, sliver);
   Net low, high;
-  split(net, 0.5, low, high);
-  const double middle = (from + to) / 2;
+  split(net, half, low, high);
+  cross = 0;
+  for (std::size_t k = 1; k <= last; ++k) cross = std::max({cross, cross_of(low[k]), cross_of(high[k - 1])});
+  sliver = sliver_of(chord, cross, error_, {});
+  if (sliver.is_fine) return put(b, to, sliver);
+  const double middle = from + half * (to - from);
   divide(low, from, middle, depth + 1);
   divide(high, middle, to, depth + 1);
+}
+
+double PieceChords::balance(const Net& net) const {
+  const double ratio = net[0].w / net[static_cast<std::size_t>(degree_)].w;
+  return ratio == 1 ? 1 : degree_ == 2 ? std::sqrt(ratio) : std::pow(ratio, 1.0 / degree_);
+}
+
+// With weights w at both ends, let W be the largest inside. At t the Bernstein values inside have the sum
+// 1 - t^n - (1-t)^n, at most 1 - 2^(1-n), and their share of all weights grows with it.
+double PieceChords::reach_of(const Net& net, double balance) const {
+  double inside = 0, scale = balance;
+  for (std::size_t k = 1; k < static_cast<std::size_t>(degree_); ++k, scale *= balance)
+    inside = std::max(inside, scale * net[k].w);
+  const double ends = std::ldexp(1.0, 1 - degree_), rest = 1 - ends;
+  return inside * rest / (inside * rest + net[0].w * ends);
+}
+
+// Points are kept within the box of the piece, which rounding could leave, so they never pass a line between patches.
+void PieceChords::put(const ParameterPoint& end, double to, const Sliver& sliver) {
+  most_ = std::max(most_, sliver.size);
+  const TrimPiece& piece = *piece_;
+  points_->push_back({std::clamp(piece.start().u + end.u, piece.lower_u(), piece.upper_u()),
+                      std::clamp(piece.start().v + end.v, piece.lower_v(), piece.upper_v())});
+  parameters_->push_back(piece.range.from + to * (piece.range.to - piece.range.from));
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -31,15 +31,15 @@ struct ChordStops {
 /// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over parts of one piece by
 /// halving it.
 ///
-/// Sliver bound: along a part of a monotone chain with the ends a and b and control points q, each point x between
-/// curve and chord meets the curve if it moves along v alone, as the part is monotone. It moves by at most
-/// max |(b - a) x (q - a)| / |b.u - a.u|, because the cross product of a point of the curve is a mean of those of the
-/// control points of its piece. On the surface that is at most speed.v times as long. The same holds along u; the
-/// smaller of both counts.
+/// Sliver bound, for a part of a chain with the ends a and b and control points q: by the cross products
+/// c = (b - a) x (q - a), each point between curve and chord lies at most d = max |c| / |b - a| from the line of the
+/// chord. Away from the chord, in any one direction, it meets the curve. Towards the chord it meets it if no q lies
+/// beside the chord, seen in that direction. So it moves by at most max |c| / |b.u - a.u| along v, max |c| / |b.v - a.v|
+/// along u, or d across the chord. The shortest on the surface counts.
 class PieceChords {
  public:
   /// Appends the points of a chain but its start, and the parameters of the caller's curve there. `chain`: pieces that
-  /// follow each other, together monotone in u and in v. Returns the largest sliver bound, which is at most
+  /// follow each other. Returns the largest sliver bound, which is at most
   /// limits.sliver, unless a piece would need more than 2^20 chords. The errors of the pieces count as a part of the
   /// sliver.
   double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points,
@@ -59,7 +59,12 @@ class PieceChords {
     double size = 0;
     bool is_fine = false;
   };
-  Sliver sliver_of(const ParameterPoint& chord, double cross, double error) const;
+  /// Whether points between curve and chord meet the chord along u and along v. They do across it.
+  struct Feet {
+    bool along_u = true, along_v = true;
+  };
+  /// `cross`: the largest |c|.
+  Sliver sliver_of(const ParameterPoint& chord, double cross, double error, const Feet& feet) const;
   /// The sliver of a chord over all of a chain.
   Sliver sliver_over(std::span<const TrimPiece> chain) const;
   /// The number of pieces that the next chord spans.
@@ -68,9 +73,15 @@ class PieceChords {
   void begin_chords(const ChordLimits& limits, std::vector<ParameterPoint>& points, std::vector<double>& parameters);
   /// Appends the points of one piece but its start; chords end at the stops, which lie inside.
   void append_one(const TrimPiece& piece, std::span<const double> stops);
+  /// Returns c so that weights w_k c^k, those of the same curve by another parameter, are equal at both ends.
+  double balance(const Net& net) const;
+  /// The largest part of the distance of control points from the chord at which the curve passes. Exact for degree 2.
+  double reach_of(const Net& net, double balance) const;
   void split(const Net& net, double x, Net& low, Net& high) const;
   /// `from`, `to`: of the piece, the part that the net is.
   void divide(const Net& net, double from, double to, int depth);
+  /// Appends the end of a chord.
+  void put(const ParameterPoint& end, double to, const Sliver& sliver);
 
   const TrimPiece* piece_ = nullptr;
   const ChordLimits* limits_ = nullptr;

@@ -19,7 +19,25 @@ struct Steps {
   }
 };
 
+/// Bounds |r_u . r_v| of a polynomial patch by the products of all steps, which are far fewer than 2^10.
+double largest_product(const HomogeneousNet& net) {
+  const int m = net.degree_u, n = net.degree_v;
+  double most = 0;
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j <= n; ++j) {
+      const Vec3 along_u = (net.at(i + 1, j) - net.at(i, j)).vector();
+      for (int k = 0; k <= m; ++k)
+        for (int l = 0; l < n; ++l)
+          most = std::max(most, std::abs(dot(along_u, (net.at(k, l + 1) - net.at(k, l)).vector())));
+    }
+  return net.scale * net.scale * m * n * most;
+}
+
 }  // namespace
+
+double SpeedBound::moved(double du, double dv) const {
+  return std::sqrt(u * du * (u * du) + 2 * product * (du * dv) + v * dv * (v * dv));
+}
 
 SpeedBound SpeedBound::of(const BezierPatch& patch) {
   const Vec3 centre = patch.hull_box().centre();
@@ -42,7 +60,12 @@ SpeedBound SpeedBound::of(const BezierPatch& patch) {
     const double by_size = patch.is_rational() ? heaviest / lightest * 2 * reach : by_hull;
     return rounded * net.scale * degree * std::min(by_hull, by_size);
   };
-  return {bound(m, along_u), bound(n, along_v)};
+  SpeedBound speed{bound(m, along_u), bound(n, along_v), 0};
+  speed.product = speed.u * speed.v;
+  constexpr int most_steps = 12;  // of a bicubic patch
+  if (!patch.is_rational() && m * (n + 1) <= most_steps && n * (m + 1) <= most_steps)
+    speed.product = std::min(speed.product, rounded * largest_product(net) + 0x1p-40 * speed.product);
+  return speed;
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -28,7 +28,7 @@ ChordLimits chord_limits(const TrimmedPatch& patch) {
   return {patch.sliver,
           {patch.chord_share * shortest(d.u0, d.u1, patch.segments.u),
            patch.chord_share * shortest(d.v0, d.v1, patch.segments.v)},
-          {patch.speed.u / (d.u1 - d.u0), patch.speed.v / (d.v1 - d.v0)},
+          patch.speed.over(d.u1 - d.u0, d.v1 - d.v0),
           patch.bend};
 }
 
@@ -74,8 +74,9 @@ bool PatchCutter::continues(const ParameterPoint& start, const TrimPiece& before
   const auto is_monotone = [](double x, double y, double z) { return (x <= y && y <= z) || (x >= y && y >= z); };
   const Domain& d = patch_.domain;
   if (patch_.stops && (before.loop != next.loop || before.curve_index != next.curve_index)) return false;
-  return patch_.chord_share == 1 && before.end() == at && is_monotone(start.u, at.u, to.u) &&
-         is_monotone(start.v, at.v, to.v) && at.u != d.u0 && at.u != d.u1 && at.v != d.v0 && at.v != d.v1;
+  const bool has_turned = !is_monotone(start.u, at.u, to.u) || !is_monotone(start.v, at.v, to.v);
+  return patch_.chord_share == 1 && before.end() == at && (patch_.stops || !has_turned) && at.u != d.u0 &&
+         at.u != d.u1 && at.v != d.v0 && at.v != d.v1;
 }
 
 std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span<const std::uint32_t> indices) {
