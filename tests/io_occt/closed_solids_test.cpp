@@ -94,6 +94,25 @@ void check_file(const std::filesystem::path& path) {
   std::printf(" volume %.6g\n", expected);
 }
 
+// Vertices that one face needs at an edge cost triangles in the other; where faces agree, none are needed.
+TEST(ClosedSolids, HaveFewMoreTrianglesThanUnconnectedFaces) {
+  const std::vector<std::filesystem::path> files = real_cad_files();
+  if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  for (const std::filesystem::path& path : files) {
+    if (path.filename() != "as1-oc-214.stp" && path.filename() != "screw.step") continue;
+    std::size_t closed = 0, open = 0;
+    for (const Shape& shape : value_of(read_cad(path)).shapes) {
+      const TessellationOptions options{.tolerance = 1e-4, .relative = true};
+      closed += mesh_of(shape, options).report.triangles;
+      TessellationOptions apart = options;
+      apart.close_edges = false;
+      open += mesh_of(shape, apart).report.triangles;
+    }
+    std::printf("%s: %zu triangles closed, %zu unconnected\n", path.filename().c_str(), closed, open);
+    EXPECT_LE(static_cast<double>(closed), 1.25 * static_cast<double>(open));
+  }
+}
+
 TEST(ClosedSolids, OfRealFiles) {
   const std::vector<std::filesystem::path> files = real_cad_files();
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";

@@ -7,6 +7,7 @@
 #include "base/impl_access.h"
 #include "block/coedge_parameter.h"
 #include "block/patch_trims.h"
+#include "tess/closing/edge_stops.h"
 #include "tess/trimmed/cut_patch.h"
 #include "tess/trimmed/patch_sides.h"
 #include "trim/trim_region_impl.h"
@@ -14,27 +15,29 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Returns where a piece has a value of u, or v, from 0 to 1. Found by false position (the Illinois variant), as the
-/// piece is monotone.
+/// Returns where a piece has a value of u, or v, from 0 to 1.
+///
+/// The piece is monotone, so the Bernstein polynomial of w_i (x_i - value) has one root. It is found by Newton's
+/// method, by halves where that would leave the root's interval.
 double place_on(const TrimPiece& piece, bool along_u, double value) {
-  const double from = along_of(piece.start(), along_u), to = along_of(piece.end(), along_u);
-  if (piece.curve.degree() == 1) {
-    const double before = piece.curve.weight(0) * (value - from), after = piece.curve.weight(1) * (to - value);
-    return std::clamp(before / (before + after), 0.0, 1.0);
-  }
-  const auto off = [&](double x) { return along_of(relative_point(piece.curve, {value, value}, x), along_u); };
-  double a = 0, b = 1, at_a = from - value, at_b = to - value, x = 0;
-  if (at_a == 0 || at_b == 0) return at_a == 0 ? 0 : 1;
-  for (int step = 0; step < 60 && std::abs(b - a) > 0x1p-52; ++step) {
-    x = std::clamp(a - at_a * (b - a) / (at_b - at_a), std::min(a, b), std::max(a, b));
-    const double at_x = off(x);
-    if (at_x == 0) return x;
-    if ((at_x < 0) != (at_b < 0)) {
-      a = b, at_a = at_b;
-    } else {
-      at_a /= 2;
-    }
-    b = x, at_b = at_x;
+  const auto last = static_cast<std::size_t>(piece.curve.degree());
+  std::array<double, max_degree + 1> c;
+  for (std::size_t k = 0; k <= last; ++k)
+    c[k] = piece.curve.weight(k) * (along_of(piece.curve.points[k], along_u) - value);
+  if (c[0] == 0 || c[last] == 0) return c[0] == 0 ? 0 : 1;
+  double low = 0, high = 1, x = std::clamp(c[0] / (c[0] - c[last]), 0.0, 1.0);
+  if (last == 1) return x;
+  for (int step = 0; step < 60; ++step) {
+    std::array<double, max_degree + 1> of = c;
+    for (std::size_t n = last; n > 1; --n)
+      for (std::size_t k = 0; k < n; ++k) of[k] = (1 - x) * of[k] + x * of[k + 1];
+    const double at = (1 - x) * of[0] + x * of[1], slope = static_cast<double>(last) * (of[1] - of[0]);
+    if (at == 0) return x;
+    ((at < 0) == (c[0] < 0) ? low : high) = x;
+    double next = x - at / slope;
+    if (!(next >= low && next <= high)) next = (low + high) / 2;
+    if (std::abs(next - x) <= 0x1p-52) return next;
+    x = next;
   }
   return x;
 }
@@ -178,6 +181,44 @@ std::vector<std::uint8_t> EdgeRuns::borders_that_meet(std::size_t patches) const
   return borders;
 }
 
+std::vector<std::array<std::uint32_t, 2>> EdgeRuns::borders_in_step(const PatchSet::Impl& set) const {
+  struct Border {
+    std::array<double, 5> at;  ///< the edge's parameters at quarters, growing
+    std::uint32_t border;
+  };
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  std::vector<Border> borders;
+  for (std::uint32_t edge = 0; edge + 1 < first_.size(); ++edge) {
+    if (!meet(edge)) continue;
+    borders.clear();
+    for (const EdgeRun& run : of(edge)) {
+      if (!run.is_side) continue;
+      const std::span<const TrimPiece> pieces = this->pieces(run);
+      const bool along_u = runs_along_u(run.side);
+      const Domain& d = set.sources[run.patch].domain;
+      const double begin = along_u ? d.u0 : d.v0, end = along_u ? d.u1 : d.v1;
+      const auto ends =
+          std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
+      if (ends.first != begin || ends.second != end) continue;
+      Border border{{}, 4 * run.patch + static_cast<std::uint32_t>(run.side)};
+      for (int k = 0; k <= 4; ++k)
+        border.at[static_cast<std::size_t>(k)] =
+            to_edge(run.face, pieces.front(), parameter_at(pieces, along_u, line_at(begin, end, Segments(4), k)));
+      if (border.at.front() > border.at.back()) std::ranges::reverse(border.at);
+      borders.push_back(border);
+    }
+    std::ranges::sort(borders, {}, [](const Border& of) { return std::pair(of.at[0], of.border); });
+    const Interval& range = edges_->edges[edge].range;
+    const double same = EdgeStops::same_share * (range.to - range.from);
+    for (std::size_t k = 1; k < borders.size(); ++k) {
+      double most = 0;
+      for (std::size_t q = 0; q < 5; ++q) most = std::max(most, std::abs(borders[k].at[q] - borders[k - 1].at[q]));
+      if (most <= same) pairs.push_back({borders[k - 1].border, borders[k].border});
+    }
+  }
+  return pairs;
+}
+
 void EdgeRuns::sort() {
   first_.assign(edges_->edges.size() + 1, 0);
   for (const EdgeRun& run : runs_) ++first_[run.edge + 1];
@@ -190,6 +231,9 @@ void EdgeRuns::sort() {
   for (std::size_t edge = 0; edge + 1 < first_.size(); ++edge)
     std::ranges::stable_sort(std::span(runs_).subspan(first_[edge], first_[edge + 1] - first_[edge]), {},
                              &EdgeRun::use);
+  for (std::uint32_t k = 0; k < runs_.size(); ++k)
+    if (runs_[k].is_side) on_sides_.emplace_back(4 * runs_[k].patch + static_cast<std::uint32_t>(runs_[k].side), k);
+  std::ranges::sort(on_sides_);
 }
 
 }  // namespace tessera::inline abi_0_1

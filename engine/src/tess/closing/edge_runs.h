@@ -1,9 +1,12 @@
 #pragma once
 // The runs of faces' loops along the edges of shapes, patch by patch.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "block/patch_edges.h"
@@ -41,6 +44,16 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   bool meet(std::size_t edge) const { return !of(edge).empty() && of(edge).front().use != of(edge).back().use; }
   /// `[4 * patch + side]`: 1 for borders along such edges.
   std::vector<std::uint8_t> borders_that_meet(std::size_t patches) const;
+  /// Pairs of borders, 4 * patch + side, along one edge whose points at equal shares lie at equal parameters of the edge.
+  /// So they meet without further vertices if they have as many segments.
+  std::vector<std::array<std::uint32_t, 2>> borders_in_step(const PatchSet::Impl& set) const;
+  /// Calls visit(run) for the runs along a side of a patch.
+  template <class Visit>
+  void for_runs_on(std::uint32_t patch, Side side, Visit visit) const {
+    const std::uint32_t border = 4 * patch + static_cast<std::uint32_t>(side);
+    const auto place = [](const std::pair<std::uint32_t, std::uint32_t>& of) { return of.first; };
+    for (const auto& [of, run] : std::ranges::equal_range(on_sides_, border, {}, place)) visit(runs_[run]);
+  }
   std::span<const TrimPiece> pieces(const EdgeRun& run) const;
   /// The use of an edge that a piece has; null if it has none.
   const Coedge* coedge(std::uint32_t face, const TrimPiece& piece) const;
@@ -59,6 +72,7 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   const PatchEdges* edges_;
   std::vector<EdgeRun> runs_;
   std::vector<std::uint32_t> first_;  ///< by edge
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> on_sides_;  ///< 4 * patch + side, and a run; sorted
   std::uint32_t next_use_ = 0;
 };
 

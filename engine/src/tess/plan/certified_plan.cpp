@@ -46,6 +46,7 @@ Result<CertifiedPlanner> CertifiedPlanner::make(const PatchSet::Impl& set, const
     planner.largest_rounding_ = std::max(planner.largest_rounding_, rounding);
   planner.find_cut_faces();
   planner.find_weld();
+  if (planner.runs_) planner.find_edges_in_step();
   if (Status status = planner.bound_turning_and_picture(execution); !status.ok()) return status;
   return planner;
 }

@@ -223,6 +223,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double own_rounding(const BlockGroup& group, PatchSet::Slot slot) const;
   /// Adds the whole patches that give vertices to cut ones that need doubles.
   void add_givers_of_cut(std::vector<std::uint8_t> & patches) const;
+  void find_edges_in_step();
   /// Finds the borders to weld, and adds the displacements to the roundings.
   void find_weld();
   Status bound_turning_and_picture(const Execution& execution);
@@ -312,6 +313,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::vector<FaceSides> face_sides_;       ///< by region of the set's trims
   std::optional<EdgeRuns> runs_;            ///< if edges are closed
   std::vector<std::uint32_t> cut_faces_;    ///< by cut patch: into PatchEdges::faces, or no_id; empty without runs_
+  std::vector<std::vector<std::uint32_t>> edges_in_step_;  ///< edges of `edges_` that should have as many segments
   Weld weld_;
   double largest_rounding_ = 0;    ///< the largest rounding of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "base/union_find.h"
 #include "parallel/parallel_for.h"
 #include "tess/plan/certified_plan.h"
 
@@ -15,7 +16,8 @@ constexpr std::size_t edges_per_task = 16;
 
 Status CertifiedPlanner::find_stops(const Request& request, const CertifiedPlan& plan, EdgeStops& stops,
                                     const Execution& execution) const {
-  const auto segments = [&](std::uint32_t patch, Side side) {
+  const auto segments = [&](std::uint32_t patch, Side side) -> std::optional<Segments> {
+    if (set_->trims && set_->trims->is_cut[patch]) return {};
     return plan.divisions_[patch].border[static_cast<std::size_t>(side)];
   };
   const auto limits = [&](std::uint32_t patch) {
@@ -53,6 +55,25 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
     cut.cut_share *= 0.95 / excess;
   }
   return too_rough(request, plan.rare_->cuts[plan.rare_->closed->edited_cuts.front()].patch);
+}
+
+void CertifiedPlanner::find_edges_in_step() {
+  UnionFind groups(edges_.count());
+  const auto edge_of_border = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
+  for (const auto& [a, b] : runs_->borders_in_step(*set_))
+    if (const std::uint32_t of_a = edge_of_border(a), of_b = edge_of_border(b);
+        of_a != SharedEdges::none && of_b != SharedEdges::none)
+      groups.unite(of_a, of_b);
+  std::vector<std::uint32_t> places(edges_.count(), no_id);
+  for (std::uint32_t edge = 0; edge < edges_.count(); ++edge) {
+    const std::uint32_t first = groups.find(edge).member;
+    if (first == edge) continue;
+    if (places[first] == no_id) {
+      places[first] = static_cast<std::uint32_t>(edges_in_step_.size());
+      edges_in_step_.push_back({first});
+    }
+    edges_in_step_[places[first]].push_back(edge);
+  }
 }
 
 std::vector<std::uint8_t> CertifiedPlanner::joined_borders(const CertifiedPlan& plan) const {

@@ -77,6 +77,21 @@ class BorderSegments {
         if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && has_needs_[k])
           pieces_[edge].add(along(segments_[k], side), is_against(k, side));
   }
+  /// Gives the edges of each group the needs of all of them. Only for uniform segments.
+  void share(std::span<const std::vector<std::uint32_t>> groups) {
+    groups_ = groups;
+    share();
+  }
+  void share() {
+    for (const std::vector<std::uint32_t>& group : groups_) {
+      EdgeNeeds all;
+      for (const std::uint32_t edge : group) {
+        all.most = std::max(all.most, needs_[edge].most);
+        all.is_even |= needs_[edge].is_even;
+      }
+      for (const std::uint32_t edge : group) needs_[edge].most = all.most, needs_[edge].is_even = all.is_even;
+    }
+  }
   /// Whether a patch has an even rate along a border that other patches may share.
   bool is_even_edge(std::size_t patch, Side side) const {
     return along(segments_[patch], side).parts_halves() && edges_.edge(patch, side) != SharedEdges::none;
@@ -120,6 +135,7 @@ class BorderSegments {
   std::vector<EdgeNeeds> needs_;         ///< `[edge]`
   std::vector<PieceNeeds> pieces_;       ///< `[edge]`; empty if all segments are uniform
   std::vector<std::uint8_t> against_;    ///< `[border]`; empty if all segments are uniform
+  std::span<const std::vector<std::uint32_t>> groups_;
 };
 
 /// Makes the borders even that patches refuse, and returns the patches that accept odd ones, with their distances there.
@@ -140,6 +156,7 @@ std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& bor
   for_odd_borders(judge);
   if (refused.empty()) return accepted;
   for (const auto& [k, side] : refused) borders.make_even(k, side);
+  borders.share();
   refused.clear();
   accepted.clear();
   for_odd_borders(judge);
@@ -168,7 +185,11 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
       borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_straddles(k)));
     are_uniform &= segments[k].are_uniform();
   }
-  if (!are_uniform) borders.part(borders_against());
+  if (are_uniform) {
+    borders.share(edges_in_step_);
+  } else {
+    borders.part(borders_against());
+  }
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;

@@ -67,7 +67,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
   if (std::isfinite(room.tolerance)) {
     // Slivers get the rest that flat patches leave.
     const double cells = chord(patch).distance_of(room.limits.segments);
-    const double left = 0.95 * room.tolerance - room.given - band_share * cells;
+    const double left = (cells > 0 ? 0.95 : 1 - 0x1p-40) * room.tolerance - room.given - band_share * cells;
     sliver = std::min(sliver, std::max(sliver_share * room.tolerance, left));
   }
   room.limits.sliver = sliver;
@@ -155,7 +155,13 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
   const auto stops_of = [&](std::span<const TrimPiece> chain) {
     return pass.stops.list(*runs_, cut_faces_[c], chain, list);
   };
-  if (runs_ && cut_faces_[c] != no_id) room.limits.stops = stops_of;
+  const auto put_on_side = [&](Side side, std::vector<SidePoint>& points) {
+    pass.stops.put_on_side(*runs_, cut.patch, side, points);
+  };
+  if (runs_ && cut_faces_[c] != no_id) {
+    room.limits.stops = stops_of;
+    room.limits.side_stops = put_on_side;
+  }
   maker.make(set_->trims->regions[cut.region], face_sides_[cut.region], cut, room.limits,
              plan.divisions_[cut.patch].border, divided_shapes()[cut.patch].collapsed, chord(cut.patch),
              plan.rare_->cuts[c]);

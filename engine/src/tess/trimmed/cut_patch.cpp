@@ -74,7 +74,8 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
     const bool along_u = runs_along_u(side), above = side == Side::v0 || side == Side::u0;
     const PatchSides& lines = along_u ? sides.v : sides.u;
     const std::size_t line = (along_u ? b : a) + !above;
-    const std::vector<SidePoint> points = lines.points(line, along_u ? a : b, borders[s]);
+    std::vector<SidePoint> points = lines.points(line, along_u ? a : b, borders[s]);
+    if (limits.side_stops) (*limits.side_stops)(side, points);
     const double across = side == Side::v0   ? limits.domain.v0
                           : side == Side::v1 ? limits.domain.v1
                           : side == Side::u0 ? limits.domain.u0

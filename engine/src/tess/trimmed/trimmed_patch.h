@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/function_ref.h"
+#include "tess/cells/patch_side.h"
 #include "tess/trimmed/chord_crossings.h"
 #include "tess/trimmed/cut_cells.h"
 #include "tess/trimmed/patch_sides.h"
@@ -33,6 +34,8 @@ struct TrimmedPatch {
   /// If set, loops name edges of a shape: chords end where curves do, and at the stops of a chain of pieces, which are
   /// valid until the next call.
   std::optional<FunctionRef<ChordStops(std::span<const TrimPiece>)>> stops = {};
+  /// If set, replaces the points of a side that lie on such edges.
+  std::optional<FunctionRef<void(Side, std::vector<SidePoint>&)>> side_stops = {};
   double chord_share = 1;  ///< the largest length of a chord, in cells
 };
 
