@@ -24,8 +24,8 @@ class Closer {
         segments_(set, runs, divisions, cuts),
         runs_(runs) {}
 
-  ClosedEdges run(double max_gap, std::span<const std::uint8_t> is_joined) {
-    points_ = edge_points(runs_, segments_, is_joined);
+  ClosedEdges run(double max_gap, double same_share, std::span<const std::uint8_t> is_joined) {
+    points_ = edge_points(runs_, segments_, same_share, is_joined);
     number_vertices();
     evaluate();
     find_open(max_gap);
@@ -156,6 +156,8 @@ class Closer {
       for (const InsertedVertex& vertex : inserted) cut->vertices.push_back(vertex.local);
       const std::size_t count = cut->triangles.size();
       const ChordBound chord = chord_(patch);
+      // A chord's sliver, and that of its parts beside it.
+      if (std::ranges::any_of(inserted, &InsertedVertex::is_on_chord)) cut->sliver *= 2;
       for (const std::uint32_t k : insert_vertices(inserted, first, cut->triangles))
         cut->measure(cut->triangles[k], chord);
       for (std::size_t k = count; k < cut->triangles.size(); ++k) cut->measure(cut->triangles[k], chord);
@@ -265,9 +267,9 @@ class Closer {
 }  // namespace
 
 ClosedEdges close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                        std::span<CutPatch> cuts, double max_gap, std::span<const std::uint8_t> is_joined,
-                        FunctionRef<ChordBound(std::uint32_t)> chord) {
-  return Closer(set, runs, divisions, cuts, chord).run(max_gap, is_joined);
+                        std::span<CutPatch> cuts, double max_gap, double same_share,
+                        std::span<const std::uint8_t> is_joined, FunctionRef<ChordBound(std::uint32_t)> chord) {
+  return Closer(set, runs, divisions, cuts, chord).run(max_gap, same_share, is_joined);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <tuple>
 
-#include "tess/closing/edge_stops.h"
-
 namespace tessera::inline abi_0_1 {
 namespace {
 
 /// The points of one edge after the other.
 class Maker {
  public:
-  Maker(const EdgeRuns& runs, EdgeSegments& segments, std::span<const std::uint8_t> is_joined)
-      : runs_(runs), all_(segments), is_joined_(is_joined) {}
+  Maker(const EdgeRuns& runs, EdgeSegments& segments, double same_share, std::span<const std::uint8_t> is_joined)
+      : runs_(runs), all_(segments), same_share_(same_share), is_joined_(is_joined) {}
 
   EdgePoints run() {
     const std::size_t edges = runs_.edges().edges.size();
@@ -30,29 +28,42 @@ class Maker {
   struct Stop {
     double s;
     PatchVertex vertex;
+    std::uint32_t use;  ///< see EdgeRun
     friend bool operator==(const Stop&, const Stop&) = default;
   };
 
   void add_edge(std::uint32_t id) {
     const PatchEdges::Edge& edge = runs_.edges().edges[id];
-    const double same = EdgeStops::same_share * (edge.range.to - edge.range.from);
+    const double same = same_share_ * (edge.range.to - edge.range.from);
     stops_.clear();
     for (const EdgeSegment& segment : segments_) {
-      const Stop low{segment.from, segment.low};
+      const Stop low{segment.from, segment.low, segment.run->use};
       if (stops_.empty() || !(stops_.back() == low)) stops_.push_back(low);
-      stops_.push_back({segment.to, segment.high});
+      stops_.push_back({segment.to, segment.high, segment.run->use});
     }
     sort_stops();
-    places_.clear();
-    for (const Stop& stop : stops_) {
-      if (places_.empty() || stop.s - places_.back().to > same) places_.push_back({stop.s, stop.s});
-      places_.back().to = stop.s;
-    }
+    find_places(same, least_same_share * (edge.range.to - edge.range.from));
     if (segments_.front().run->use != segments_.back().run->use) {
       insert_missing();
     }
     for (const EdgeSegment& segment : segments_) count(segment, out_.counts[id]);
     put(id, edge, same);
+  }
+
+  /// Finds the parameters that count as one: those within `same`. Two of one use do only within `least`, so that no
+  /// triangle loses its area.
+  void find_places(double same, double least) {
+    places_.clear();
+    std::size_t first = 0;  // the first stop of the place
+    for (std::size_t k = 0; k < stops_.size(); ++k) {
+      const auto is_apart = [&](const Stop& of) { return of.use == stops_[k].use && stops_[k].s - of.s > least; };
+      const std::span<const Stop> before = std::span(stops_).subspan(first, k - first);
+      if (places_.empty() || stops_[k].s - places_.back().to > same || std::ranges::any_of(before, is_apart)) {
+        places_.push_back({stops_[k].s, stops_[k].s});
+        first = k;
+      }
+      places_.back().to = stops_[k].s;
+    }
   }
 
   void count(const EdgeSegment& segment, EdgePoints::Counts& counts) const {
@@ -76,7 +87,7 @@ class Maker {
       const bool is_point = segment.start == segment.end;
       auto at = std::ranges::upper_bound(places_, segment.from, {}, &Interval::from);
       for (; at != places_.end() && at->to < segment.to; ++at)
-        stops_.push_back({at->from, is_point ? segment.low : all_.insert(segment, at->from)});
+        stops_.push_back({at->from, is_point ? segment.low : all_.insert(segment, at->from), segment.run->use});
     }
     if (stops_.size() > before) sort_stops();
   }
@@ -97,6 +108,7 @@ class Maker {
 
   const EdgeRuns& runs_;
   EdgeSegments& all_;
+  double same_share_;
   std::span<const std::uint8_t> is_joined_;
   EdgePoints out_;
   std::vector<EdgeSegment> segments_;
@@ -106,8 +118,9 @@ class Maker {
 
 }  // namespace
 
-EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, std::span<const std::uint8_t> is_joined) {
-  return Maker(runs, segments, is_joined).run();
+EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
+                       std::span<const std::uint8_t> is_joined) {
+  return Maker(runs, segments, same_share, is_joined).run();
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -29,9 +29,10 @@ struct EdgePoints {
 };
 
 /// Lists the points of all edges. Where an edge has several coedges, each gets vertices at the parameters of all:
-/// missing ones are inserted. Parameters within EdgeStops::same_share of the edge's range count as one.
+/// missing ones are inserted. Parameters within `same_share` of the edge's range count as one.
 ///
 /// `is_joined`: by 4 * patch + side, whether triangles of another patch have the same border anyway.
-EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, std::span<const std::uint8_t> is_joined);
+EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
+                       std::span<const std::uint8_t> is_joined);
 
 }  // namespace tessera::inline abi_0_1

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "base/impl_access.h"
 #include "block/coedge_parameter.h"
 #include "block/patch_trims.h"
-#include "tess/closing/edge_stops.h"
 #include "tess/trimmed/cut_patch.h"
 #include "tess/trimmed/patch_sides.h"
 #include "trim/trim_region_impl.h"
@@ -96,6 +96,14 @@ EdgeRuns::EdgeRuns(const PatchSet::Impl& set) : edges_(set.edges.get()) {
 
 std::span<const TrimPiece> EdgeRuns::pieces(const EdgeRun& run) const {
   return std::span(impl_of(edges_->faces[run.face].region).pieces).subspan(run.first, run.end - run.first);
+}
+
+const EdgeRun* EdgeRuns::run_of(std::uint32_t face, std::uint32_t first, std::size_t count) const {
+  const auto place = [&](std::uint32_t k) { return std::pair(runs_[k].face, runs_[k].first); };
+  const auto at = std::ranges::lower_bound(by_face_, std::pair(face, first), {}, place);
+  if (at == by_face_.end() || place(*at) != std::pair(face, first)) return nullptr;
+  const EdgeRun& run = runs_[*at];
+  return run.end - run.first == count ? &run : nullptr;
 }
 
 const Coedge* EdgeRuns::coedge(std::uint32_t face, const TrimPiece& piece) const {
@@ -209,7 +217,7 @@ std::vector<std::array<std::uint32_t, 2>> EdgeRuns::borders_in_step(const PatchS
     }
     std::ranges::sort(borders, {}, [](const Border& of) { return std::pair(of.at[0], of.border); });
     const Interval& range = edges_->edges[edge].range;
-    const double same = EdgeStops::same_share * (range.to - range.from);
+    const double same = largest_same_share * (range.to - range.from);
     for (std::size_t k = 1; k < borders.size(); ++k) {
       double most = 0;
       for (std::size_t q = 0; q < 5; ++q) most = std::max(most, std::abs(borders[k].at[q] - borders[k - 1].at[q]));
@@ -234,6 +242,9 @@ void EdgeRuns::sort() {
   for (std::uint32_t k = 0; k < runs_.size(); ++k)
     if (runs_[k].is_side) on_sides_.emplace_back(4 * runs_[k].patch + static_cast<std::uint32_t>(runs_[k].side), k);
   std::ranges::sort(on_sides_);
+  by_face_.resize(runs_.size());
+  std::iota(by_face_.begin(), by_face_.end(), std::uint32_t{0});
+  std::ranges::sort(by_face_, {}, [&](std::uint32_t k) { return std::pair(runs_[k].face, runs_[k].first); });
 }
 
 }  // namespace tessera::inline abi_0_1

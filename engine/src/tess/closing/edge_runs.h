@@ -30,6 +30,10 @@ struct EdgeRun {
   Side side{};  ///< if it runs along one
 };
 
+/// Bounds on the share of an edge's range within which two parameters count as one. Faces of one edge rarely have equal
+/// parameters at one place; a vertex moves by as much along the edge.
+inline constexpr double least_same_share = 1e-9, largest_same_share = 1e-5;
+
 /// All runs of a set, edge by edge. They depend on the set's loops alone.
 class [[gnu::visibility("hidden")]] EdgeRuns {
  public:
@@ -47,6 +51,11 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   /// Pairs of borders, 4 * patch + side, along one edge whose points at equal shares lie at equal parameters of the edge.
   /// So they meet without further vertices if they have as many segments.
   std::vector<std::array<std::uint32_t, 2>> borders_in_step(const PatchSet::Impl& set) const;
+  /// The number of a run, below count().
+  std::size_t index(const EdgeRun& run) const { return static_cast<std::size_t>(&run - runs_.data()); }
+  std::size_t count() const { return runs_.size(); }
+  /// The run of exactly these pieces of a face; null if there is none.
+  const EdgeRun* run_of(std::uint32_t face, std::uint32_t first, std::size_t count) const;
   /// Calls visit(run) for the runs along a side of a patch.
   template <class Visit>
   void for_runs_on(std::uint32_t patch, Side side, Visit visit) const {
@@ -71,8 +80,9 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
 
   const PatchEdges* edges_;
   std::vector<EdgeRun> runs_;
-  std::vector<std::uint32_t> first_;  ///< by edge
+  std::vector<std::uint32_t> first_;                               ///< by edge
   std::vector<std::pair<std::uint32_t, std::uint32_t>> on_sides_;  ///< 4 * patch + side, and a run; sorted
+  std::vector<std::uint32_t> by_face_;                             ///< runs by growing face and first piece
   std::uint32_t next_use_ = 0;
 };
 

@@ -153,7 +153,8 @@ PatchVertex EdgeSegments::insert(const EdgeSegment& segment, double s) {
                        segment.start,
                        segment.end,
                        t,
-                       {std::clamp(domain.local_u(at.u), 0.0, 1.0), std::clamp(domain.local_v(at.v), 0.0, 1.0)}});
+                       {std::clamp(domain.local_u(at.u), 0.0, 1.0), std::clamp(domain.local_v(at.v), 0.0, 1.0)},
+                       true});
   return {run.patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
 }
 

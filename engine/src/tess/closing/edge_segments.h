@@ -20,6 +20,7 @@ struct InsertedVertex {
   std::uint32_t start = 0, end = 0;  ///< the vertices of the segment as it was
   double at = 0;                     ///< grows from start to end
   ParameterPoint local;              ///< in the patch's own parameters
+  bool is_on_chord = false;          ///< else it is on a side
 };
 
 /// A vertex of a patch: one that it has, or one of a list that it gets.

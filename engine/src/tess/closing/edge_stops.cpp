@@ -23,19 +23,18 @@ std::pair<double, double> ends_of(std::span<const TrimPiece> pieces, bool along_
 
 }  // namespace
 
-void EdgeStops::find(const PatchSet::Impl& set, const EdgeRuns& runs, std::size_t edge,
+void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
                      FunctionRef<std::optional<Segments>(std::uint32_t patch, Side side)> segments,
                      FunctionRef<ChordLimits(std::uint32_t patch)> limits) {
-  const std::span<const EdgeRun> of = runs.of(edge);
+  const std::span<const EdgeRun> of = runs_->of(edge);
   std::vector<double>& list = stops_[edge];
-  list.clear();
   const auto whole = [&](const EdgeRun& run) { return run.is_side ? segments(run.patch, run.side) : std::nullopt; };
-  if (!runs.meet(edge) || std::ranges::all_of(of, [&](const EdgeRun& run) { return whole(run).has_value(); })) return;
-  const Interval& range = runs.edges().edges[edge].range;
-  const double same = same_share * (range.to - range.from);
+  if (!runs_->meet(edge) || std::ranges::all_of(of, [&](const EdgeRun& run) { return whole(run).has_value(); })) return;
+  const Interval& range = runs_->edges().edges[edge].range;
+  const double same = same_share_ * (range.to - range.from);
   for (const EdgeRun& run : of) {
-    const std::span<const TrimPiece> pieces = runs.pieces(run);
-    const auto add = [&](double t) { list.push_back(runs.to_edge(run.face, pieces.front(), t)); };
+    const std::span<const TrimPiece> pieces = runs_->pieces(run);
+    const auto add = [&](double t) { list.push_back(runs_->to_edge(run.face, pieces.front(), t)); };
     add(pieces.front().range.from);
     add(pieces.back().range.to);
     const std::optional<Segments> along = whole(run);
@@ -54,49 +53,69 @@ void EdgeStops::find(const PatchSet::Impl& set, const EdgeRuns& runs, std::size_
   for (const bool reversed : {false, true}) {
     found.clear();
     for (const EdgeRun& run : of) {
-      if (whole(run) || runs.coedge(run.face, runs.pieces(run).front())->reversed != reversed) continue;
-      run.is_side ? add_segments(runs, run, limits(run.patch), found) : add_chords(runs, run, limits(run.patch), found);
+      const TrimPiece& piece = runs_->pieces(run).front();
+      if (whole(run) || runs_->coedge(run.face, piece)->reversed != reversed) continue;
+      if (run.is_side) {
+        add_segments(run, limits(run.patch), found);
+        continue;
+      }
+      lay(run, limits(run.patch));
+      for (const double t : chords_[runs_->index(run)].parameters) found.push_back(runs_->to_edge(run.face, piece, t));
     }
     list.insert(list.end(), found.begin(), found.end());
     sort_distinct(list, same);
   }
+  for (const EdgeRun& run : of)
+    if (!run.is_side && !is_laid(run, same)) lay(run, limits(run.patch));
 }
 
-void EdgeStops::add_chords(const EdgeRuns& runs, const EdgeRun& run, const ChordLimits& limits,
-                           std::vector<double>& found) const {
-  const std::span<const TrimPiece> pieces = runs.pieces(run);
-  PieceChords chords;
-  std::vector<double> own, ends;
-  std::vector<ParameterPoint> points;
-  (void)chords.append(pieces, list(runs, run.face, pieces, own), limits, points, ends);
-  for (const double t : ends) found.push_back(runs.to_edge(run.face, pieces.front(), t));
+void EdgeStops::lay(const EdgeRun& run, const ChordLimits& limits) {
+  LaidChords& chords = chords_[runs_->index(run)];
+  chords.points.clear(), chords.parameters.clear();
+  std::vector<double> own;
+  const std::span<const TrimPiece> pieces = runs_->pieces(run);
+  chords.sliver = PieceChords().append(pieces, list(run.face, pieces, own), limits, chords.points, chords.parameters);
 }
 
-void EdgeStops::add_segments(const EdgeRuns& runs, const EdgeRun& run, const ChordLimits& limits,
-                             std::vector<double>& found) const {
-  const std::span<const TrimPiece> pieces = runs.pieces(run);
+bool EdgeStops::is_laid(const EdgeRun& run, double same) const {
+  const std::span<const TrimPiece> pieces = runs_->pieces(run);
+  const auto [from, to] = std::minmax({runs_->to_edge(run.face, pieces.front(), pieces.front().range.from),
+                                       runs_->to_edge(run.face, pieces.front(), pieces.back().range.to)});
+  const std::vector<double>& stops = stops_[run.edge];
+  const auto inside = std::ranges::lower_bound(stops, to - same) - std::ranges::upper_bound(stops, from + same);
+  return inside + 1 == std::ssize(chords_[runs_->index(run)].parameters);
+}
+
+const LaidChords* EdgeStops::laid(std::uint32_t face, std::uint32_t first, std::size_t count) const {
+  const EdgeRun* const run = runs_->run_of(face, first, count);
+  if (!run || chords_[runs_->index(*run)].points.empty()) return nullptr;
+  return &chords_[runs_->index(*run)];
+}
+
+void EdgeStops::add_segments(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found) const {
+  const std::span<const TrimPiece> pieces = runs_->pieces(run);
   const bool along_u = runs_along_u(run.side);
   const double longest = (along_u ? limits.box.u : limits.box.v) * (1 + 0x1p-40);
   const auto [low, high] = ends_of(pieces, along_u);
-  std::vector<double> places = places_on_side(runs, run);
+  std::vector<double> places = places_on_side(run);
   places.push_back(high);
   double before = low;
   for (const double place : places) {
     const int count = static_cast<int>(std::ceil((place - before) / longest));
     for (int k = 1; k < count; ++k) {
       const double t = parameter_at(pieces, along_u, before + (place - before) * k / count);
-      found.push_back(runs.to_edge(run.face, pieces.front(), t));
+      found.push_back(runs_->to_edge(run.face, pieces.front(), t));
     }
     before = place;
   }
 }
 
-std::vector<double> EdgeStops::places_on_side(const EdgeRuns& runs, const EdgeRun& run) const {
-  const std::span<const TrimPiece> pieces = runs.pieces(run);
+std::vector<double> EdgeStops::places_on_side(const EdgeRun& run) const {
+  const std::span<const TrimPiece> pieces = runs_->pieces(run);
   const bool along_u = runs_along_u(run.side);
   const auto [low, high] = ends_of(pieces, along_u);
   std::vector<double> own, places;
-  const ChordStops stops = list(runs, run.face, pieces, own);
+  const ChordStops stops = list(run.face, pieces, own);
   for (const double t : stops.at) {
     if (t <= pieces.front().range.from + stops.same || t >= pieces.back().range.to - stops.same) continue;
     const double place = along_of(point_at(pieces, t), along_u);
@@ -107,12 +126,11 @@ std::vector<double> EdgeStops::places_on_side(const EdgeRuns& runs, const EdgeRu
   return places;
 }
 
-void EdgeStops::put_on_side(const EdgeRuns& runs, std::uint32_t patch, Side side,
-                            std::vector<SidePoint>& points) const {
+void EdgeStops::put_on_side(std::uint32_t patch, Side side, std::vector<SidePoint>& points) const {
   const bool is_above = side == Side::u0 || side == Side::v0;
-  runs.for_runs_on(patch, side, [&](const EdgeRun& run) {
+  runs_->for_runs_on(patch, side, [&](const EdgeRun& run) {
     if (stops_[run.edge].empty()) return;
-    const auto [low, high] = ends_of(runs.pieces(run), runs_along_u(side));
+    const auto [low, high] = ends_of(runs_->pieces(run), runs_along_u(side));
     const auto first = std::ranges::upper_bound(points, low, {}, &SidePoint::at);
     if (first == points.begin()) return;
     const SidePoint from = *(first - 1);
@@ -120,27 +138,26 @@ void EdgeStops::put_on_side(const EdgeRuns& runs, std::uint32_t patch, Side side
     const auto is_other = [&](const SidePoint& of) { return of.below != from.below || of.above != from.above; };
     if ((is_above ? from.below : from.above) || std::any_of(first, last, is_other)) return;
     std::vector<SidePoint> inside;
-    for (const double place : places_on_side(runs, run)) inside.push_back({place, from.below, from.above});
+    for (const double place : places_on_side(run)) inside.push_back({place, from.below, from.above});
     points.insert(points.erase(first, last), inside.begin(), inside.end());
   });
 }
 
-ChordStops EdgeStops::list(const EdgeRuns& runs, std::uint32_t face, std::span<const TrimPiece> pieces,
-                           std::vector<double>& list) const {
+ChordStops EdgeStops::list(std::uint32_t face, std::span<const TrimPiece> pieces, std::vector<double>& list) const {
   list.clear();
   const TrimPiece& piece = pieces.front();
-  const Coedge* const coedge = runs.coedge(face, piece);
+  const Coedge* const coedge = runs_->coedge(face, piece);
   if (!coedge) return {};
-  const std::vector<double>& stops = stops_[runs.edges().faces[face].first_edge + coedge->edge];
+  const std::vector<double>& stops = stops_[runs_->edges().faces[face].first_edge + coedge->edge];
   const auto [from, to] =
-      std::minmax({runs.to_edge(face, piece, piece.range.from), runs.to_edge(face, piece, pieces.back().range.to)});
+      std::minmax({runs_->to_edge(face, piece, piece.range.from), runs_->to_edge(face, piece, pieces.back().range.to)});
   auto stop = std::ranges::lower_bound(stops, from);
   if (stop != stops.begin()) --stop;
   for (; stop != stops.end() && (*stop <= to || stop == stops.begin() || *(stop - 1) <= to); ++stop)
-    list.push_back(runs.to_curve(face, piece, *stop));
+    list.push_back(runs_->to_curve(face, piece, *stop));
   if (list.size() > 1 && list.front() > list.back()) std::ranges::reverse(list);
-  const Interval& range = (*runs.edges().faces[face].loops)[piece.loop].curves[piece.curve_index].domain();
-  return {list, same_share * (range.to - range.from)};
+  const Interval& range = (*runs_->edges().faces[face].loops)[piece.loop].curves[piece.curve_index].domain();
+  return {list, same_share_ * (range.to - range.from)};
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -9,44 +9,66 @@
 #include "base/function_ref.h"
 #include "tess/cells/segments.h"
 #include "tess/closing/edge_runs.h"
-#include "tess/trimmed/patch_sides.h"
-#include "tess/trimmed/piece_chords.h"
+#include "tess/trimmed/trimmed_patch.h"
 
 namespace tessera::inline abi_0_1 {
 
 /// Common parameters of the faces along each edge: where its runs end, where sides of whole patches have vertices, and
 /// where chords and sides of cut patches must be divided for any of the faces. So the faces' triangles need few more
 /// vertices to meet.
-class EdgeStops {
+class [[gnu::visibility("hidden")]] EdgeStops {
  public:
-  /// Parameters within this share of an edge's range count as one.
-  static constexpr double same_share = 1e-9;
-
-  explicit EdgeStops(std::size_t edges) : stops_(edges) {}
+  /// Parameters within `same_share` of an edge's range count as one.
+  EdgeStops(const EdgeRuns& runs, double same_share)
+      : runs_(&runs), same_share_(same_share), stops_(runs.edges().edges.size()), chords_(runs.count()) {}
 
   /// Finds the stops of an edge. Threads: any number, each with its own edges.
   ///
   /// - `segments`: of a patch's side; none if loops cut the patch.
   /// - `limits`: of chords within a cut patch.
-  void find(const PatchSet::Impl& set, const EdgeRuns& runs, std::size_t edge,
+  void find(const PatchSet::Impl& set, std::size_t edge,
             FunctionRef<std::optional<Segments>(std::uint32_t patch, Side side)> segments,
             FunctionRef<ChordLimits(std::uint32_t patch)> limits);
   /// Replaces the points of a cut patch's side along edges by the stops there, where no other patch has them.
-  void put_on_side(const EdgeRuns& runs, std::uint32_t patch, Side side, std::vector<SidePoint>& points) const;
+  void put_on_side(std::uint32_t patch, Side side, std::vector<SidePoint> & points) const;
+  /// The chords of a run of `count` pieces, which end at all stops; null if there is none.
+  const LaidChords* laid(std::uint32_t face, std::uint32_t first, std::size_t count) const;
   /// Lists the stops of pieces of one curve into `list`, whose values the result refers to.
-  ChordStops list(const EdgeRuns& runs, std::uint32_t face, std::span<const TrimPiece> pieces,
-                  std::vector<double>& list) const;
+  ChordStops list(std::uint32_t face, std::span<const TrimPiece> pieces, std::vector<double> & list) const;
 
  private:
-  /// Adds stops to those in `stops_` where a chord, or a segment of a cut patch's side, would be too long.
-  void add_chords(const EdgeRuns& runs, const EdgeRun& run, const ChordLimits& limits,
-                  std::vector<double>& found) const;
-  void add_segments(const EdgeRuns& runs, const EdgeRun& run, const ChordLimits& limits,
-                    std::vector<double>& found) const;
+  /// Lays the chords of a run, which end at the stops.
+  void lay(const EdgeRun& run, const ChordLimits& limits);
+  /// Whether the chords of a run end at all stops.
+  bool is_laid(const EdgeRun& run, double same) const;
+  /// Adds the places where the side of a run in a cut patch needs more points.
+  void add_segments(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found) const;
   /// Returns the places of stops along the side of a run, growing, without its ends.
-  std::vector<double> places_on_side(const EdgeRuns& runs, const EdgeRun& run) const;
+  std::vector<double> places_on_side(const EdgeRun& run) const;
 
+  const EdgeRuns* runs_;
+  double same_share_;
   std::vector<std::vector<double>> stops_;  ///< by edge; empty if it has a single coedge, or no chords
+  std::vector<LaidChords> chords_;          ///< by run; empty for runs along sides
+};
+
+/// The demands of edges on one cut patch of a face.
+class [[gnu::visibility("hidden")]] PatchStops final : public EdgeDemands {
+ public:
+  PatchStops(const EdgeStops& stops, std::uint32_t patch, std::uint32_t face)
+      : stops_(stops), patch_(patch), face_(face) {}
+  const LaidChords* laid(std::uint32_t first, std::size_t count) const override {
+    return stops_.laid(face_, first, count);
+  }
+  ChordStops stops(std::span<const TrimPiece> chain) const override { return stops_.list(face_, chain, list_); }
+  void put_on_side(Side side, std::vector<SidePoint> & points) const override {
+    stops_.put_on_side(patch_, side, points);
+  }
+
+ private:
+  const EdgeStops& stops_;
+  std::uint32_t patch_, face_;
+  mutable std::vector<double> list_;
 };
 
 }  // namespace tessera::inline abi_0_1

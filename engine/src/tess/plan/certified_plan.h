@@ -224,6 +224,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Adds the whole patches that give vertices to cut ones that need doubles.
   void add_givers_of_cut(std::vector<std::uint8_t> & patches) const;
   void find_edges_in_step();
+  /// The share of an edge's range within which parameters count as one.
+  double same_share(const Request& request) const;
   /// Finds the borders to weld, and adds the displacements to the roundings.
   void find_weld();
   Status bound_turning_and_picture(const Execution& execution);
@@ -281,7 +283,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The facts that all patches of one pass are cut by. `is_shared`: by edge, whether two borders or more have it.
   struct CutPass {
     const Request& request;
-    const EdgeStops& stops;
+    const EdgeStops* stops;  ///< null if no edges are closed
     std::span<const std::uint8_t> is_shared;
   };
   std::vector<std::uint8_t> shared_edges() const;

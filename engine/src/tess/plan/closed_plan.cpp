@@ -24,9 +24,14 @@ Status CertifiedPlanner::find_stops(const Request& request, const CertifiedPlan&
     return chord_limits(room_of(*find_cut(plan.cuts(), patch), request, plan).limits);
   };
   const auto find = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, *runs_, edge, segments, limits);
+    for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, edge, segments, limits);
   };
   return parallel_for(set_->edges->edges.size(), edges_per_task, {.cancel = execution.cancel}, find);
+}
+
+// An edge is rarely longer than a few diagonals of the set, so vertices move by a small part of the tolerance.
+double CertifiedPlanner::same_share(const Request& request) const {
+  return std::clamp(0.05 * request.tolerance / set_->box().diagonal(), least_same_share, largest_same_share);
 }
 
 // Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then patches
@@ -39,12 +44,11 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
       if (Status status = divide_and_cut(cut, plan, execution); !status.ok()) return status;
     if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
     ClosedEdges& closed = plan.rare_->closed.emplace(
-        tessera::close_edges(*set_, *runs_, plan.divisions_, plan.rare_->cuts, options_.max_gap, joined_borders(plan),
-                             [this](std::uint32_t patch) { return chord(patch); }));
+        tessera::close_edges(*set_, *runs_, plan.divisions_, plan.rare_->cuts, options_.max_gap, same_share(request),
+                             joined_borders(plan), [this](std::uint32_t patch) { return chord(patch); }));
     double excess = 0;
     for (const std::uint32_t c : closed.edited_cuts) {
       CutPatch& edited = plan.rare_->cuts[c];
-      edited.sliver *= 2;  // of the whole chord, and of its parts beside it
       excess = std::max(excess, bound_cut(room_of(edited, request, plan), edited, plan));
     }
     if (excess <= 1) {

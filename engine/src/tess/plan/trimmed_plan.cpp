@@ -151,17 +151,8 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
     const std::uint32_t edge = edges_.edge(cut.patch, side);
     room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && pass.is_shared[edge];
   }
-  std::vector<double> list;
-  const auto stops_of = [&](std::span<const TrimPiece> chain) {
-    return pass.stops.list(*runs_, cut_faces_[c], chain, list);
-  };
-  const auto put_on_side = [&](Side side, std::vector<SidePoint>& points) {
-    pass.stops.put_on_side(*runs_, cut.patch, side, points);
-  };
-  if (runs_ && cut_faces_[c] != no_id) {
-    room.limits.stops = stops_of;
-    room.limits.side_stops = put_on_side;
-  }
+  std::optional<PatchStops> demands;
+  if (pass.stops && cut_faces_[c] != no_id) room.limits.edges = &demands.emplace(*pass.stops, cut.patch, cut_faces_[c]);
   maker.make(set_->trims->regions[cut.region], face_sides_[cut.region], cut, room.limits,
              plan.divisions_[cut.patch].border, divided_shapes()[cut.patch].collapsed, chord(cut.patch),
              plan.rare_->cuts[c]);
@@ -183,14 +174,16 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     const std::vector<Division> before = std::move(plan.divisions_);
     plan.divisions_.clear();
     divide(request.tolerance, plan);
-    EdgeStops stops(runs_ ? set_->edges->edges.size() : 0);
+    std::optional<EdgeStops> stops;
     if (runs_)
-      if (Status status = find_stops(request, plan, stops, execution); !status.ok()) return status;
+      if (Status status = find_stops(request, plan, stops.emplace(*runs_, same_share(request)), execution);
+          !status.ok())
+        return status;
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
       for (std::size_t c = begin; c < end; ++c)
         if (excess[c] > 1 || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
-          excess[c] = cut_patch(c, {request, stops, is_shared}, maker, plan);
+          excess[c] = cut_patch(c, {request, stops ? &*stops : nullptr, is_shared}, maker, plan);
     };
     const Execution quiet{.cancel = execution.cancel};
     if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;

@@ -56,11 +56,11 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
     out.open_edges = 0;
     return;
   }
-  number(collapsed, limits.stops.has_value(), out);
+  number(collapsed, limits.edges != nullptr, out);
   refine(limits, chord, out);
   merge(limits, out);
   measure(limits.segments, chord, out);
-  find_border_vertices(borders, limits.domain, limits.stops.has_value(), out);
+  find_border_vertices(borders, limits.domain, limits.edges != nullptr, out);
 }
 
 bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
@@ -75,7 +75,7 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
     const PatchSides& lines = along_u ? sides.v : sides.u;
     const std::size_t line = (along_u ? b : a) + !above;
     std::vector<SidePoint> points = lines.points(line, along_u ? a : b, borders[s]);
-    if (limits.side_stops) (*limits.side_stops)(side, points);
+    if (limits.edges) limits.edges->put_on_side(side, points);
     const double across = side == Side::v0   ? limits.domain.v0
                           : side == Side::v1 ? limits.domain.v1
                           : side == Side::u0 ? limits.domain.u0

@@ -28,6 +28,13 @@ struct ChordStops {
   double same = 0;             ///< nearer to an end of a piece, a stop is that end
 };
 
+/// The chords along a chain of pieces: their points but the start, and the parameters of the caller's curve there.
+struct LaidChords {
+  std::vector<ParameterPoint> points;
+  std::vector<double> parameters;
+  double sliver = 0;  ///< the largest
+};
+
 /// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over parts of one piece by
 /// halving it.
 ///

@@ -73,9 +73,9 @@ bool PatchCutter::continues(const ParameterPoint& start, const TrimPiece& before
   const ParameterPoint &at = next.start(), &to = next.end();
   const auto is_monotone = [](double x, double y, double z) { return (x <= y && y <= z) || (x >= y && y >= z); };
   const Domain& d = patch_.domain;
-  if (patch_.stops && (before.loop != next.loop || before.curve_index != next.curve_index)) return false;
+  if (patch_.edges && (before.loop != next.loop || before.curve_index != next.curve_index)) return false;
   const bool has_turned = !is_monotone(start.u, at.u, to.u) || !is_monotone(start.v, at.v, to.v);
-  return patch_.chord_share == 1 && before.end() == at && (patch_.stops || !has_turned) && at.u != d.u0 &&
+  return patch_.chord_share == 1 && before.end() == at && (patch_.edges || !has_turned) && at.u != d.u0 &&
          at.u != d.u1 && at.v != d.v0 && at.v != d.v1;
 }
 
@@ -91,10 +91,7 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
     std::uint32_t last = add_point(pieces[first].start());
     parameters_.assign(1, pieces[first].range.from);
     const std::span<const TrimPiece> chain = pieces.subspan(first, count);
-    const double sliver = patch_.stops
-                              ? chords_of_pieces_.append(chain, (*patch_.stops)(chain), limits_, points_, parameters_)
-                              : chords_of_pieces_.append(chain, limits_, points_, parameters_);
-    sliver_ = std::max(sliver_, sliver);
+    sliver_ = std::max(sliver_, add_chords(chain, static_cast<std::uint32_t>(first)));
     for (std::size_t n = 0; last + 1 < points_.size(); ++last, ++n) {
       chord_count += !(points_[last] == points_[last + 1]);
       chords_.push_back({last, last + 1});
@@ -104,6 +101,15 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
     }
   }
   return chord_count;
+}
+
+double PatchCutter::add_chords(std::span<const TrimPiece> chain, std::uint32_t first) {
+  if (!patch_.edges) return chords_of_pieces_.append(chain, limits_, points_, parameters_);
+  const LaidChords* const laid = patch_.chord_share == 1 ? patch_.edges->laid(first, chain.size()) : nullptr;
+  if (!laid) return chords_of_pieces_.append(chain, patch_.edges->stops(chain), limits_, points_, parameters_);
+  points_.insert(points_.end(), laid->points.begin(), laid->points.end());
+  parameters_.insert(parameters_.end(), laid->parameters.begin(), laid->parameters.end());
+  return laid->sliver;
 }
 
 bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_, marks_) && cut(); }

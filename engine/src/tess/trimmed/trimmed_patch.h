@@ -20,6 +20,18 @@
 
 namespace tessera::inline abi_0_1 {
 
+/// What the edges of a shape demand of the boundary of a cut patch. Chords end where curves do.
+class EdgeDemands {
+ public:
+  virtual ~EdgeDemands() = default;
+  /// The chords of a chain, `count` pieces from `first` on, by the limits of the patch; null if they are not known.
+  virtual const LaidChords* laid(std::uint32_t first, std::size_t count) const = 0;
+  /// The stops of a chain of pieces, valid until the next call.
+  virtual ChordStops stops(std::span<const TrimPiece> chain) const = 0;
+  /// Replaces the points of a side that lie on edges.
+  virtual void put_on_side(Side side, std::vector<SidePoint>& points) const = 0;
+};
+
 /// The facts that cutting a patch needs.
 struct TrimmedPatch {
   Domain domain;           ///< in the surface's parameters, as those of loops and of cells
@@ -31,11 +43,7 @@ struct TrimmedPatch {
   double bend;             ///< see ChordLimits
   VertexRounding rounding;
   std::array<bool, 4> is_shared{};  ///< by Side: whether another patch has the same border, as across a seam
-  /// If set, loops name edges of a shape: chords end where curves do, and at the stops of a chain of pieces, which are
-  /// valid until the next call.
-  std::optional<FunctionRef<ChordStops(std::span<const TrimPiece>)>> stops = {};
-  /// If set, replaces the points of a side that lie on such edges.
-  std::optional<FunctionRef<void(Side, std::vector<SidePoint>&)>> side_stops = {};
+  const EdgeDemands* edges = nullptr;  ///< set if loops name edges of a shape
   double chord_share = 1;  ///< the largest length of a chord, in cells
 };
 
@@ -93,6 +101,8 @@ class PatchCutter {
   /// The parameter of a point on a chord.
   double parameter(const LoopChord& chord, std::uint32_t point) const;
   std::uint32_t add_point(const ParameterPoint& point);
+  /// Adds the points of a chain but its start, and their parameters. `first`: its first piece. Returns the sliver.
+  double add_chords(std::span<const TrimPiece> chain, std::uint32_t first);
   /// Whether a piece continues a chain of pieces from `start` to the end of `before` so that it stays monotone.
   bool continues(const ParameterPoint& start, const TrimPiece& before, const TrimPiece& next) const;
 
