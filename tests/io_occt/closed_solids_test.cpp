@@ -68,7 +68,7 @@ void add(const Shape& shape, std::size_t instances, double tolerance, Totals& to
     totals.volume += static_cast<double>(instances) * volume;
     totals.allowed += static_cast<double>(instances) * area * (made.bound + made.gap);
   } else {
-    EXPECT_LE(made.report.open_edges, made.open_edges) << what;  // see Tessellation::open_edges()
+    EXPECT_EQ(made.report.open_edges, made.open_edges) << what;
   }
   totals.triangles += instances * made.report.triangles;
   totals.gap = std::max(totals.gap, made.gap);

@@ -51,22 +51,24 @@ class Closer {
     count_ = bases_.back() + static_cast<std::uint32_t>(segments_.inserted().size());
     is_used_.assign(count_, 0);
     of_points_.reserve(points_.vertices.size());
-    for (const PatchVertex& vertex : points_.vertices) of_points_.push_back(number(vertex));
-    for (const auto& [a, b] : segments_.same()) same_.push_back({number(a), number(b)});
+    const auto use = [&](const PatchVertex& vertex) {
+      const std::uint32_t number = this->number(vertex);
+      is_used_[number] = 1;
+      return number;
+    };
+    for (const PatchVertex& vertex : points_.vertices) of_points_.push_back(use(vertex));
+    for (const auto& [a, b] : segments_.same()) same_.push_back({use(a), use(b)});
   }
   std::uint32_t boundary_count(std::uint32_t patch) const {
     if (const CutPatch* const cut = cut_of(patch)) return static_cast<std::uint32_t>(cut->vertices.size());
     return divisions_[patch].empty ? 0 : static_cast<std::uint32_t>(divisions_[patch].ring_count());
   }
-  std::uint32_t number(const PatchVertex& vertex) {
+  std::uint32_t number(const PatchVertex& vertex) const {
     const bool is_whole = !divisions_[vertex.patch].empty;
-    const std::uint32_t number =
-        vertex.vertex & PatchVertex::inserted
-            ? bases_.back() + (vertex.vertex ^ PatchVertex::inserted)
-            : bases_[vertex.patch] + vertex.vertex -
-                  (is_whole ? static_cast<std::uint32_t>(divisions_[vertex.patch].inner_count()) : 0);
-    is_used_[number] = 1;
-    return number;
+    return vertex.vertex & PatchVertex::inserted
+               ? bases_.back() + (vertex.vertex ^ PatchVertex::inserted)
+               : bases_[vertex.patch] + vertex.vertex -
+                     (is_whole ? static_cast<std::uint32_t>(divisions_[vertex.patch].inner_count()) : 0);
   }
 
   /// Finds the faces' own points of all vertices.
@@ -233,15 +235,10 @@ class Closer {
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
       out_.closed_segments += is_open_[edge] || !runs_.meet(edge) ? -std::int64_t{points_.counts[edge].more}
                                                                   : std::int64_t{points_.counts[edge].own};
-    for (const CutPatch& cut : cuts_)
-      for (const CutPatch::LoopSegment& line : cut.loop_segments) out_.closed_segments += is_closed_gap(cut, line);
-  }
-
-  /// Whether a line that closes a gap between two curves has become a point.
-  bool is_closed_gap(const CutPatch& cut, const CutPatch::LoopSegment& line) const {
-    if (line.has_curve || line.start == line.end) return false;
-    const std::uint32_t first = places_[bases_[cut.patch] + line.start], last = places_[bases_[cut.patch] + line.end];
-    return first == last && first != none;
+    for (const EdgeSegment& gap : points_.gaps) {
+      const std::uint32_t low = places_[number(gap.low)], high = places_[number(gap.high)];
+      out_.closed_segments += std::int64_t{low == high && low != none} - !gap.begins();
+    }
   }
 
   const PatchSet::Impl& set_;

@@ -21,6 +21,8 @@ class Maker {
       all_.append(edge, segments_);
       if (!segments_.empty()) add_edge(edge);
     }
+    all_.append_gaps(out_.gaps);
+    std::erase_if(out_.gaps, [&](const EdgeSegment& gap) { return !is_alone(gap); });
     return std::move(out_);
   }
 
@@ -46,7 +48,8 @@ class Maker {
     if (segments_.front().run->use != segments_.back().run->use) {
       insert_missing();
     }
-    for (const EdgeSegment& segment : segments_) count(segment, out_.counts[id]);
+    for (const EdgeSegment& segment : segments_)
+      if (is_alone(segment)) ++(segment.begins() ? out_.counts[id].own : out_.counts[id].more);
     put(id, edge, same);
   }
 
@@ -66,12 +69,11 @@ class Maker {
     }
   }
 
-  void count(const EdgeSegment& segment, EdgePoints::Counts& counts) const {
+  /// Whether a segment is no point, and no other patch has triangles on it.
+  bool is_alone(const EdgeSegment& segment) const {
     const EdgeRun& run = *segment.run;
-    if (segment.start == segment.end) return;
-    if (run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]) return;
-    const bool begins = segment.low.vertex == segment.start || segment.high.vertex == segment.start;
-    ++(begins ? counts.own : counts.more);
+    return segment.start != segment.end &&
+           !(run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]);
   }
 
   void sort_stops() {

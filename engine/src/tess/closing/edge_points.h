@@ -26,6 +26,7 @@ struct EdgePoints {
     std::uint32_t own = 0, more = 0;
   };
   std::vector<Counts> counts;
+  std::vector<EdgeSegment> gaps;  ///< lines that close gaps between curves, if no other patch has triangles on them
 };
 
 /// Lists the points of all edges. Where an edge has several coedges, each gets vertices at the parameters of all:

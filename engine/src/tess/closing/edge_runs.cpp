@@ -137,13 +137,15 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
     run.first = piece++;
     const TrimPiece& at = pieces[run.first];
     const Coedge* const coedge = this->coedge(face, at);
-    if (!coedge) continue;
+    if (!coedge && at.curve_index != TrimPiece::none) continue;
     const Along along = along_of(at, region.lines);
     while (piece < pieces.size() && goes_on(pieces[piece - 1], pieces[piece], along, region.lines)) ++piece;
     run.end = piece;
     run.face = face;
-    run.edge = of.first_edge + coedge->edge;
-    run.use = first_uses[at.loop] + at.curve_index;
+    if (coedge) {
+      run.edge = of.first_edge + coedge->edge;
+      run.use = first_uses[at.loop] + at.curve_index;
+    }
     if (along != Along::none) {
       find_side(run, along == Along::u, sides);
     } else {
@@ -151,7 +153,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
       run.patch = of.patches[a * region.count_v() + cell_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
     }
     const bool is_cut = set.trims && run.patch != no_id && set.trims->is_cut[run.patch];
-    if (run.is_side ? run.patch != no_id : is_cut) runs_.push_back(run);
+    if (run.is_side ? run.patch != no_id : is_cut) (coedge ? runs_ : gaps_).push_back(run);
   }
 }
 

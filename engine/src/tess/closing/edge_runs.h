@@ -21,7 +21,7 @@ struct FaceSides;
 /// Pieces of a loop that follow each other along one edge and within one patch: along one of its sides, or through its
 /// inside.
 struct EdgeRun {
-  std::uint32_t edge = 0;            ///< into PatchEdges::edges
+  std::uint32_t edge = no_id;        ///< into PatchEdges::edges; no_id: none, so the pieces close a gap
   std::uint32_t use = 0;             ///< a number of the coedge, in the order of faces, loops and curves
   std::uint32_t face = 0;            ///< into PatchEdges::faces
   std::uint32_t first = 0, end = 0;  ///< into the pieces of the face's region
@@ -44,6 +44,8 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   std::span<const EdgeRun> of(std::size_t edge) const {
     return std::span(runs_).subspan(first_[edge], first_[edge + 1] - first_[edge]);
   }
+  /// The runs of lines that close gaps between the curves of loops.
+  std::span<const EdgeRun> gaps() const { return gaps_; }
   /// Whether faces meet along an edge, or a face meets itself.
   bool meet(std::size_t edge) const { return !of(edge).empty() && of(edge).front().use != of(edge).back().use; }
   /// `[4 * patch + side]`: 1 for borders along such edges.
@@ -79,7 +81,7 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   void sort();
 
   const PatchEdges* edges_;
-  std::vector<EdgeRun> runs_;
+  std::vector<EdgeRun> runs_, gaps_;
   std::vector<std::uint32_t> first_;                               ///< by edge
   std::vector<std::pair<std::uint32_t, std::uint32_t>> on_sides_;  ///< 4 * patch + side, and a run; sorted
   std::vector<std::uint32_t> by_face_;                             ///< runs by growing face and first piece

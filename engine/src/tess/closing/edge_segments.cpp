@@ -23,7 +23,7 @@ void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) 
       const PatchEdges::Face& face = runs_.edges().faces[runs[end].face];
       join_corner(face, pieces.front().start());
       join_corner(face, pieces.back().end());
-      runs[end].is_side ? append_side(runs[end], segments) : append_chords(runs[end], segments);
+      append(runs[end], segments);
     }
     const std::span<EdgeSegment> of_use = std::span(segments).subspan(first);
     std::ranges::sort(of_use, [](const EdgeSegment& a, const EdgeSegment& b) {
@@ -32,10 +32,16 @@ void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) 
   }
 }
 
+void EdgeSegments::append_gaps(std::vector<EdgeSegment>& segments) {
+  for (const EdgeRun& run : runs_.gaps()) append(run, segments);
+}
+
 void EdgeSegments::append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const {
-  const TrimPiece& piece = runs_.pieces(*segment.run).front();
-  segment.from = runs_.to_edge(segment.run->face, piece, from);
-  segment.to = runs_.to_edge(segment.run->face, piece, to);
+  if (segment.run->edge != no_id) {
+    const TrimPiece& piece = runs_.pieces(*segment.run).front();
+    segment.from = runs_.to_edge(segment.run->face, piece, from);
+    segment.to = runs_.to_edge(segment.run->face, piece, to);
+  }
   if (segment.from > segment.to) std::swap(segment.from, segment.to), std::swap(segment.low, segment.high);
   segments.push_back(segment);
 }

@@ -37,6 +37,8 @@ struct EdgeSegment {
   double from = 0, to = 0;           ///< the edge's parameter at its ends
   PatchVertex low, high;             ///< at `from` and at `to`
   std::uint32_t start = 0, end = 0;  ///< the boundary's own vertices; equal: a point, which gets no more vertices
+  /// Whether it has the first of these, so that each segment of a boundary begins once, however many runs end in it.
+  bool begins() const { return low.vertex == start || high.vertex == start; }
 };
 
 /// The segments of all edges of a set, and the vertices that they need at the ends of edges.
@@ -49,6 +51,8 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
 
   /// Appends the segments of an edge: use by use, by growing parameters of the edge.
   void append(std::size_t edge, std::vector<EdgeSegment> & segments);
+  /// Appends the segments of lines that close gaps between curves, after those of all edges. They have no parameters.
+  void append_gaps(std::vector<EdgeSegment> & segments);
   /// Vertices that are one, in pairs: corners of a face's patches, and the points of a side that is one point.
   std::span<const std::array<PatchVertex, 2>> same() const { return same_; }
   std::span<const InsertedVertex> inserted() const { return inserted_; }
@@ -64,6 +68,9 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   };
   void append_chords(const EdgeRun& run, std::vector<EdgeSegment>& segments);
   void append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments);
+  void append(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
+    run.is_side ? append_side(run, segments) : append_chords(run, segments);
+  }
   /// Completes a segment between two parameters of the loop's curve.
   void append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const;
   /// The vertices of a side by growing places.

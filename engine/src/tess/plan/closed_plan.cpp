@@ -96,6 +96,8 @@ std::vector<std::uint8_t> CertifiedPlanner::joined_borders(const CertifiedPlan& 
   };
   full_borders([&](std::size_t, std::uint32_t edge) { borders[edge] += borders[edge] < 2; });
   full_borders([&](std::size_t border, std::uint32_t edge) { is_joined[border] = borders[edge] == 2; });
+  for (const CutPatch& cut : plan.cuts())
+    for (std::size_t side = 0; side < 4; ++side) is_joined[4 * cut.patch + side] |= cut.is_shared[side];
   return is_joined;
 }
 

@@ -87,11 +87,10 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
     };
     out.is_full[s] = cutter_.add_side(points, across, along_u, above) == static_cast<std::size_t>(borders[s].rate());
     for (std::size_t k = 0; k < points.size() && out.is_full[s]; ++k) out.is_full[s] = is_even(k);
-    if (out.is_full[s]) continue;
-    for (const SidePoint& point : points) {
-      const bool is_kept = above ? point.above : point.below, has_other = above ? point.below : point.above;
-      out.open_edges += is_kept && (lines.is_outer(line) ? !limits.is_shared[s] : !has_other);
-    }
+    out.is_shared[s] = !out.is_full[s] && lines.is_outer(line) && limits.is_shared[s];
+    if (out.is_full[s] || out.is_shared[s]) continue;
+    for (const SidePoint& point : points)
+      out.open_edges += above ? point.above && !point.below : point.below && !point.above;
   }
   out.open_edges += static_cast<std::uint32_t>(cutter_.add_pieces(impl.pieces, impl.pieces_of(place)));
   return cutter_.cut();
@@ -140,7 +139,7 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
   cutter_.for_loop_chords([&](const LoopChord& chord) {
     const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
     if (start != CutPatch::none && end != CutPatch::none)
-      out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to, chord.has_curve});
+      out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});
   });
 }
 

@@ -25,12 +25,11 @@ struct CutPatch {
     std::uint16_t at;
     Side side;
   };
-  /// A chord of a loop's curve, and its ends.
+  /// A chord of a loop's curve, or of a line that closes a gap between two curves, and its ends.
   struct LoopSegment {
     std::uint32_t piece = 0;           ///< of the region
     std::uint32_t start = 0, end = 0;  ///< vertices; equal where rounding puts them in one place
     double from = 0, to = 0;           ///< parameters of the caller's curve
-    bool has_curve = false;            ///< else it is a line that closes a gap between two curves
   };
   /// A vertex on a side, at `along`, the surface's parameter along it.
   struct SideVertex {
@@ -52,8 +51,9 @@ struct CutPatch {
   /// If the loops name edges: the chords along them, and all vertices on sides, by sides and places.
   std::vector<LoopSegment> loop_segments;
   std::vector<SideVertex> side_vertices;
-  std::array<bool, 4> is_full{};   ///< by Side: the loops keep all of it, and none ends on it
-  std::array<SameBorder, 4> same;  ///< by Side
+  std::array<bool, 4> is_full{};    ///< by Side: the loops keep all of it, and none ends on it
+  std::array<bool, 4> is_shared{};  ///< by Side: not full, but a patch of another face has the same border
+  std::array<SameBorder, 4> same;   ///< by Side
   /// Edges along loops, and on parts of sides that no neighbour has; where loops cross, before they are divided.
   std::uint32_t open_edges = 0;
   double distance = 0, sliver = 0;  ///< the largest distance of a triangle, and of a sliver between chords and curves

@@ -96,8 +96,7 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
       chord_count += !(points_[last] == points_[last + 1]);
       chords_.push_back({last, last + 1});
       marks_.push_back(static_cast<std::uint32_t>(loop_chords_.size()));
-      loop_chords_.push_back({static_cast<std::uint32_t>(first), last, last + 1, parameters_[n], parameters_[n + 1],
-                              pieces[first].curve_index != TrimPiece::none});
+      loop_chords_.push_back({static_cast<std::uint32_t>(first), last, last + 1, parameters_[n], parameters_[n + 1]});
     }
   }
   return chord_count;

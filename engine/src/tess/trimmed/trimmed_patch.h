@@ -56,7 +56,6 @@ struct LoopChord {
   std::uint32_t piece = 0;  ///< the first that it spans
   std::uint32_t start = 0, end = 0;
   double from = 0, to = 0;  ///< the parameters of the caller's curve
-  bool has_curve = true;    ///< else it closes a gap between two curves
 };
 
 /// Cuts patches, one after the other.
@@ -85,7 +84,7 @@ class PatchCutter {
       if (points_[start] == points_[end]) continue;
       const LoopChord& whole = loop_chords_[marks_[k]];
       visit(LoopChord{whole.piece, cells_.first_equal(start), cells_.first_equal(end), parameter(whole, start),
-                      parameter(whole, end), whole.has_curve});
+                      parameter(whole, end)});
     }
   }
   /// The parameters of a vertex, in the surface and in the patch.
