@@ -85,8 +85,9 @@ Result<SurfaceJet> evaluate_jet(const ModelSurface& surface, double u, double v)
 Result<PatchGrid> to_bezier(const ModelSurface& surface, const FitOptions& options = {});
 /// Returns the surface's loops in the parameters of to_bezier()'s grid, as TrimRegion::make() takes them: the loops
 /// themselves for all kinds but quadrics, see grid_parameters(). Loops of a quadric become cubics, off by at most 1e-9
-/// of the ranges, as sampled; straight lines along a parameter remain so. Errors: unsupported (a loop of a quadric runs
-/// over more than 64 times its ranges; index = the loop), non_finite (a loop that overflows there).
+/// of the ranges, as sampled; straight lines along a parameter remain so where the loop names no edges. Errors:
+/// unsupported (a loop of a quadric runs over more than 64 times its ranges; index = the loop), non_finite (a loop that
+/// overflows there).
 Result<Shared<std::vector<TrimLoop>>> grid_trims(const ModelSurface& surface);
 
 /// Makes one set of the patches of all surfaces. source(k).surface is the index into model.surfaces, and

@@ -31,12 +31,12 @@ struct FaceTrims {
 /// Finds the trims of faces. Faces of equal loops over equal grids share them, as instances of a part do.
 class FaceTrimsFinder {
  public:
-  /// How far an outline may be off the sides of its domain, as a share of it.
+  /// How far the outline of a spline, as CAD files have it, may be off the sides of its domain, as a share of it.
   static constexpr double outline_snap = 0x1p-13;
   /// Returns the trims of the next face, to stay until the next call.
-  Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid, bool is_outline) {
+  Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid, bool is_loose) {
     TrimOptions options = TrimRegion::Impl::options_of(grid);
-    if (is_outline) options.snap = outline_snap;
+    if (is_loose) options.snap = outline_snap;
     const auto [first, last] = known_.equal_range(key_of(loops));
     for (auto known = first; known != last; ++known)
       if (known->second.is_for(loops, grid, options)) return &known->second.trims;
@@ -240,7 +240,9 @@ class ModelPatches {
       all_.add(k, std::move(grid));
     } else {
       const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
-      const Result<FaceTrims*> trims = loops ? trims_.find(*loops, grid, !is_trimmed) : loops.status();
+      // The outline of a quadric has the pace of its edges, which snapping to lines between patches would change.
+      const bool is_loose = !is_trimmed && !std::holds_alternative<QuadricPiece>(surface.surface);
+      const Result<FaceTrims*> trims = loops ? trims_.find(*loops, grid, is_loose) : loops.status();
       if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
       if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
       const std::size_t places = grid.patches().size();

@@ -22,10 +22,11 @@ class ToGrid {
 
   bool is_identity() const { return !is_arc(profile_.u) && !is_arc(profile_.v); }
 
-  Result<Curve> mapped(const Curve& curve) const {
+  /// Maps a curve. `keeps_pace`: its points keep their parameters.
+  Result<Curve> mapped(const Curve& curve, bool keeps_pace) const {
     const Result<BezierPieces> pieces = to_bezier(curve);
     if (!pieces) return pieces.status();
-    return runs_along_parameters(*pieces) ? mapped_points(*pieces) : fitted(*pieces);
+    return stays_straight(*pieces, keeps_pace) ? mapped_points(*pieces) : fitted(*pieces);
   }
 
   bool is_near(const Vec3& p, const Vec3& q, double share) const {
@@ -34,10 +35,15 @@ class ToGrid {
   }
 
  private:
-  static bool runs_along_parameters(const BezierPieces& pieces) {
+  /// Whether a curve consists of lines along the parameters. Along an arc, these change their pace.
+  bool stays_straight(const BezierPieces& pieces, bool keeps_pace) const {
     if (pieces.degree != 1 || !pieces.weights.empty()) return false;
-    for (std::size_t k = 0; k + 1 < pieces.points.size(); ++k)
-      if (pieces.points[k].x != pieces.points[k + 1].x && pieces.points[k].y != pieces.points[k + 1].y) return false;
+    for (std::size_t k = 0; k + 1 < pieces.points.size(); ++k) {
+      const bool moves_u = pieces.points[k].x != pieces.points[k + 1].x,
+                 moves_v = pieces.points[k].y != pieces.points[k + 1].y;
+      if (moves_u && moves_v) return false;
+      if (keeps_pace && ((moves_u && is_arc(profile_.u)) || (moves_v && is_arc(profile_.v)))) return false;
+    }
     return true;
   }
 
@@ -93,7 +99,7 @@ Result<std::vector<TrimLoop>> grid_loops(std::span<const TrimLoop> loops, const 
             return Status(StatusCode::unsupported,
                           "loop " + std::to_string(k) + " runs over more than 64 times the ranges of the quadric",
                           static_cast<std::ptrdiff_t>(k));
-        Result<Curve> mapped = to_grid.mapped(curve);
+        Result<Curve> mapped = to_grid.mapped(curve, !result[k].coedges.empty());
         if (!mapped) return mapped.status();
         curve = *std::move(mapped);
       }

@@ -11,7 +11,8 @@
 namespace tessera::inline abi_0_1 {
 
 /// Returns loops of a quadric in the parameters of to_bezier(piece), of which `loops` has the canonical ones. Straight
-/// lines along a parameter remain so; all else becomes cubics that are off by at most 1e-9 of the ranges, as sampled.
+/// lines along a parameter remain so, unless the loop names edges, along which each point must keep its parameter. All
+/// else becomes cubics that are off by at most 1e-9 of the ranges, as sampled.
 /// Errors: unsupported (a loop runs over more than 64 times the ranges of the piece; index = the loop), non_finite.
 Result<std::vector<TrimLoop>> grid_loops(std::span<const TrimLoop> loops, const QuadricPiece& piece);
 
