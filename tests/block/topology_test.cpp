@@ -232,6 +232,37 @@ TEST(Topology, IdsOfNothingAreRefused) {
   with_loop([](TrimLoop& loop) { loop.coedges[1].edge = 12; },
             "shape 0 (cube): face 2, loop 0 uses edge 12, there are 12 edges");
   with_loop([](TrimLoop& loop) { loop.coedges[1].edge = no_id; }, "uses edge 4294967295");
+  // A table of the parameter: values at s = 0, 1/2 and 1, over `range`.
+  const auto with_table = [&](std::size_t coedge, const std::array<double, 3>& t, const std::string& words,
+                              const Interval& range = {0, 1}) {
+    const std::vector<Vec3> values{{t[0], 0, 0}, {t[1], 0, 0}, {t[2], 0, 0}};
+    const double middle = (range.from + range.to) / 2;
+    const std::vector<double> knots{range.from, range.from, middle, range.to, range.to};
+    with_loop(
+        [&](TrimLoop& loop) {
+          ASSERT_EQ(loop.coedges[coedge].reversed, coedge == 2);
+          loop.coedges[coedge].parameter = value_of(Curve::b_spline(1, values, knots));
+        },
+        "shape 0 (cube): face 2, loop 0, coedge " + std::to_string(coedge) + ": its parameter " + words);
+  };
+  with_table(1, {0, 0.7, 0.6}, "must grow along the edge, it goes from 0.7 to 0.6");
+  with_table(2, {0, 0.3, 1}, "must fall along the edge, it goes from 0 to 0.3");
+  with_table(1, {0.5, 0.5, 0.5}, "is 0.5 everywhere");
+  with_table(1, {0, 0.5, 1}, "is stated from 0.1 to 1, the edge's range is from 0 to 1", {0.1, 1});
+  with_table(1, {0, 0.5, 1}, "is stated from 0 to 0.5, the edge's range is from 0 to 1", {0, 0.5});
+  with_table(1, {0, 0.5, 1.1}, "is 1.1 at 1, the curve's domain is from 0 to 1");
+  with_table(2, {1, 0.5, -0.1}, "is -0.1 at 1, the curve's domain is from 0 to 1");
+  with_loop(
+      [](TrimLoop& loop) {
+        loop.coedges[1].parameter = value_of(Curve::bezier(std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}}));
+      },
+      "coedge 1: its parameter is of degree 2, it must be of degree 1");
+  Shape stated = cube();
+  std::vector<TrimLoop> loops = stated.faces[2].trims;
+  for (Coedge& coedge : loops[0].coedges)
+    coedge.parameter = line({coedge.reversed ? 1.0 : 0.0, 0, 0}, {coedge.reversed ? 0.0 : 1.0, 0, 0});
+  stated.faces[2].trims = loops;
+  EXPECT_TRUE(check_topology(stated).ok()) << check_topology(stated).message();
   const Model model = two_cubes();
   const std::vector<Instance> wrong{{2}};
   expect_refused(placed_faces(model.shapes, wrong), StatusCode::invalid_argument, 0, "instance 0: it is of shape 2");

@@ -1,6 +1,8 @@
 #include "tessera/topology.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "base/text.h"
@@ -56,18 +58,49 @@ Status check_edges(const Shape& shape, const Faults& fault) {
   return {};
 }
 
+/// Says what is wrong with the parameter that a coedge states; empty: nothing. `curve`: the loop's.
+std::string parameter_fault(const Coedge& coedge, const Interval& edge, const Interval& curve) {
+  constexpr double share = 1e-6;  // that rounding and readers may be off, of a range
+  const Curve& table = *coedge.parameter;
+  if (table.degree() != 1) return "is of degree " + std::to_string(table.degree()) + ", it must be of degree 1";
+  const std::span<const Vec3> points = table.points();
+  for (std::size_t k = 0; k + 1 < points.size(); ++k)
+    if (coedge.reversed ? points[k].x < points[k + 1].x : points[k].x > points[k + 1].x)
+      return "must " + std::string(coedge.reversed ? "fall" : "grow") + " along the edge, it goes from " +
+             text(points[k].x) + " to " + text(points[k + 1].x);
+  if (points.front().x == points.back().x) return "is " + text(points.front().x) + " everywhere";
+  const Interval& d = table.domain();
+  const double slack = share * (edge.to - edge.from);
+  if (d.from > edge.from + slack || d.to < edge.to - slack)
+    return "is stated from " + text(d.from) + " to " + text(d.to) + ", the edge's range is from " + text(edge.from) +
+           " to " + text(edge.to);
+  for (const double s : {edge.from, edge.to}) {
+    const double t = evaluate_jet(table, std::clamp(s, d.from, d.to)).position.x;
+    const double beyond = std::max(curve.from - t, t - curve.to);
+    if (beyond > share * (curve.to - curve.from))
+      return "is " + text(t) + " at " + text(s) + ", the curve's domain is from " + text(curve.from) + " to " +
+             text(curve.to);
+  }
+  return {};
+}
+
 Status check_face(const Shape& shape, std::size_t face, const Faults& fault) {
   const std::vector<TrimLoop>& loops = edge_loops(shape.faces[face]);
   for (std::size_t k = 0; k < loops.size(); ++k) {
     const auto in_loop = [&](const std::string& sentence) {
-      return fault(item("face", face) + ", " + item("loop", k) + " " + sentence);
+      return fault(item("face", face) + ", " + item("loop", k) + sentence);
     };
     const std::vector<Coedge>& coedges = loops[k].coedges;
     if (!coedges.empty() && coedges.size() != loops[k].curves.size())
-      return in_loop("has " + counted(coedges.size(), "coedge") + " for " + counted(loops[k].curves.size(), "curve"));
-    for (const Coedge& coedge : coedges)
+      return in_loop(" has " + counted(coedges.size(), "coedge") + " for " + counted(loops[k].curves.size(), "curve"));
+    for (std::size_t c = 0; c < coedges.size(); ++c) {
+      const Coedge& coedge = coedges[c];
       if (coedge.edge >= shape.edges.size())
-        return in_loop("uses " + item("edge", coedge.edge) + there_are(shape.edges.size(), "edge", "edges"));
+        return in_loop(" uses " + item("edge", coedge.edge) + there_are(shape.edges.size(), "edge", "edges"));
+      if (!coedge.parameter) continue;
+      const std::string found = parameter_fault(coedge, shape.edges[coedge.edge].range, loops[k].curves[c].domain());
+      if (!found.empty()) return in_loop(", " + item("coedge", c) + ": its parameter " + found);
+    }
   }
   return {};
 }
