@@ -100,9 +100,9 @@ class Maker {
       EdgePoint point{id, no_id, static_cast<std::uint32_t>(out_.vertices.size()), 0};
       for (; stop != stops_.end() && stop->s <= to; ++stop) out_.vertices.push_back(stop->vertex);
       point.count = static_cast<std::uint32_t>(out_.vertices.size()) - point.first;
-      if (edge.degenerate || std::abs(from - edge.range.from) <= same)
+      if (edge.degenerate || (from == places_.front().from && std::abs(from - edge.range.from) <= same))
         point.vertex = edge.start;
-      else if (std::abs(to - edge.range.to) <= same)
+      else if (to == places_.back().to && std::abs(to - edge.range.to) <= same)
         point.vertex = edge.end;
       out_.points.push_back(point);
     }
