@@ -43,6 +43,11 @@ TEST(MeshDistance, IsThatToTheNearestTriangle) {
       }
       EXPECT_NEAR(distance->distance(p, 100), least, 1e-12);
       EXPECT_EQ(distance->distance(p, 0.5 * least), 0.5 * least);
+      const auto nearest = distance->nearest(p, 100);
+      ASSERT_TRUE(nearest);
+      EXPECT_NEAR(length(*nearest - p), least, 1e-12);
+      EXPECT_LT(distance->distance(*nearest, 100), 1e-12);  // it is a point of the mesh
+      EXPECT_FALSE(distance->nearest(p, 0.5 * least));
     }
   }
 }

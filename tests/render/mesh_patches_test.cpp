@@ -42,7 +42,7 @@ Image picture(const RayScene& scene, const Box3& box, const MeshPatches* mesh, b
   Settings settings;
   settings.width = width, settings.height = height, settings.samples = 2, settings.shade = Shade::normals;
   if (mesh) settings.normal = [mesh](const Hit& hit) { return mesh->normal(hit); };
-  if (edges) settings.nearest_edge = [mesh](const Hit& hit) { return mesh->nearest_edge(hit); };
+  if (edges) settings.nearest_edge = [mesh](const Hit& hit, double) { return mesh->nearest_edge(hit); };
   return value_of(render(scene, box, settings));
 }
 
@@ -89,7 +89,7 @@ TEST(MeshPatches, EdgesAreDark) {
   Settings settings;
   settings.width = width, settings.height = width, settings.samples = 2, settings.shade = Shade::clay;
   settings.camera = Camera{{0.5, 0.5, 2}, {0.5, 0.5, 0}, 40, {0, 1, 0}};
-  settings.nearest_edge = [&](const Hit& hit) { return patches.nearest_edge(hit); };
+  settings.nearest_edge = [&](const Hit& hit, double) { return patches.nearest_edge(hit); };
   const Image image = value_of(render(scene, set.box(), settings));
   const auto red = [&](int x, int y) { return image.rgb[3 * static_cast<std::size_t>(y * width + x)]; };
   EXPECT_LT(red(width / 2, width / 2), 100);       // on the diagonal

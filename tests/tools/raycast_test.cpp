@@ -5,6 +5,7 @@
 
 #include "tessera/io.h"
 #include "tessera/ray_scene.h"
+#include "tools/picture.h"
 #include "tools/tool_test.h"
 
 namespace tessera::test {
@@ -94,6 +95,36 @@ TEST_F(RaycastTool, MeshesAreDrawn) {
   EXPECT_EQ(output_of({"raycast", "mesh.stl", "-o", "b.png", "--size", "64x48"}), "b.png: 64 x 48, 992 triangles\n");
 }
 
+TEST_F(RaycastTool, LinesAreDrawnWhereSurfacesEnd) {
+  // Two squares side by side, the left one of two patches.
+  folder_.file("squares.json", R"({"format": "tessera", "version": 1, "surfaces": [
+    {"kind": "b_spline", "degree": [1, 1], "knots_u": "clamped", "knots_v": "clamped",
+     "points": [[[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 2, 0], [1, 2, 0], [2, 2, 0]]]},
+    {"kind": "b_spline", "degree": [1, 1], "knots_u": "clamped", "knots_v": "clamped",
+     "points": [[[2, 0, 0], [4, 0, 0]], [[2, 2, 0], [4, 2, 0]]]}]})");
+  const auto draw = [&](const Names& options) {
+    Names command{"raycast", "squares.json", "-o",
+                  "a.png",   "--size",       "81x81",
+                  "--shade", "clay",         "--camera=2.01,1,6,2.01,1,0,40"};
+    command.insert(command.end(), options.begin(), options.end());
+    output_of(command);
+    return read_picture(folder_ / "a.png");
+  };
+  const auto dark_columns = [](const Picture& picture) {
+    std::vector<unsigned> columns;
+    const std::size_t row = 3 * std::size_t{picture.width} * 40;
+    for (unsigned x = 0; x < picture.width; ++x)
+      if (picture.rgb[row + 3 * x] < 100) columns.push_back(x);
+    return columns;
+  };
+  EXPECT_TRUE(dark_columns(draw({})).empty());
+  const std::vector<unsigned> dark = dark_columns(draw({"--edges"}));
+  // The left border, the common one in the middle, and the right one; none where the patches of the left square meet.
+  ASSERT_FALSE(dark.empty());
+  for (const unsigned x : dark) EXPECT_TRUE(x < 6 || (x >= 39 && x <= 41) || x > 74) << x;
+  EXPECT_TRUE(std::ranges::any_of(dark, [](unsigned x) { return x >= 39 && x <= 41; }));
+}
+
 TEST_F(RaycastTool, OptionsThatMeshesCannotHave) {
   output_of({"tessellate", teapot, "-o", "mesh.ply", "--grid", "4x4"});
   folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
@@ -103,8 +134,8 @@ TEST_F(RaycastTool, OptionsThatMeshesCannotHave) {
   expect_failure({"raycast", "mesh.ply", "-o", "a.png", "--shade", "uv"}, 1, "need surfaces, found the mesh mesh.ply");
   expect_failure({"raycast", "mesh.ply", teapot, "-o", "a.png"}, 1,
                  "shows surfaces or meshes, found the mesh mesh.ply and");
-  expect_failure({"raycast", teapot, "-o", "a.png", "--edges"}, 1,
-                 "--edges draws the edges of meshes, found the surfaces of");
+  expect_failure({"raycast", teapot, "-o", "a.png", "--edges", "--shade", "uv"}, 1,
+                 "--edges needs --shade lambert, normals or clay, and a .png picture");
   folder_.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   expect_failure({"raycast", "flat.obj", "-o", "a.png"}, 1, "flat.obj: the mesh has no triangle with an area");
   folder_.file("far.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 4\n");

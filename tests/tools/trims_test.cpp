@@ -1,8 +1,7 @@
 // Trimmed models: meshes and pictures show what is kept, and say how.
 
-#include <png.h>
-
 #include "tessera/io.h"
+#include "tools/picture.h"
 #include "tools/tool_test.h"
 
 namespace tessera::test {
@@ -19,23 +18,6 @@ class Trims : public ToolTest {
         "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nparm v 0 1\n";
     folder_.file("plain.obj", square + "end\n");
     folder_.file("trimmed.obj", square + "trim 0 4 1\nend\n");
-  }
-
-  struct Picture {
-    unsigned width = 0, height = 0;
-    std::vector<unsigned char> rgb;
-  };
-  Picture picture(const std::string& name) const {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    Picture out;
-    if (png_image_begin_read_from_file(&image, (folder_ / name).c_str()) == 0) throw std::runtime_error(image.message);
-    image.format = PNG_FORMAT_RGB;
-    out.width = image.width;
-    out.height = image.height;
-    out.rgb.resize(PNG_IMAGE_SIZE(image));
-    png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr);
-    return out;
   }
 };
 
@@ -97,7 +79,7 @@ TEST_F(Trims, ThePictureSaysSo) {
             std::string::npos);
   EXPECT_EQ(content_of(folder_ / "plain.png").find("tEXt"), std::string::npos);
   // In the picture: the strip at the bottom is dark with bright letters, and less of the square is seen above it.
-  const Picture a = picture("plain.png"), b = picture("trimmed.png");
+  const Picture a = read_picture(folder_ / "plain.png"), b = read_picture(folder_ / "trimmed.png");
   ASSERT_EQ(a.rgb.size(), b.rgb.size());
   const std::size_t row = 3 * a.width;
   std::size_t bright = 0;

@@ -22,25 +22,22 @@ double squared_distance(const Vec3& p, const Box3& box) {
   return sum;
 }
 
-double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a, from = p - a;
+Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
   const double length2 = dot(along, along);
-  const double t = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
-  const Vec3 away = from - t * along;
-  return dot(away, away);
+  return length2 > 0 ? a + std::clamp(dot(p - a, along) / length2, 0.0, 1.0) * along : a;
 }
 
-/// The distance from the plane if the foot lies inside the triangle, otherwise from the edges.
-double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+/// The foot on the plane if it lies inside the triangle, otherwise the nearest point of the edges.
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = cross(b - a, c - a);
   const double size2 = dot(normal, normal);
   if (size2 > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
-      dot(cross(a - c, p - c), normal) >= 0) {
-    const double height = dot(p - a, normal);
-    return height * height / size2;
-  }
-  return std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
-                   squared_distance_to_segment(p, c, a)});
+      dot(cross(a - c, p - c), normal) >= 0)
+    return p - (dot(p - a, normal) / size2) * normal;
+  const std::array<Vec3, 3> points{nearest_on_segment(p, a, b), nearest_on_segment(p, b, c),
+                                   nearest_on_segment(p, c, a)};
+  return *std::ranges::min_element(points, {}, [&](const Vec3& q) { return dot(q - p, q - p); });
 }
 
 }  // namespace
@@ -95,17 +92,21 @@ void MeshDistance::build(std::size_t begin, std::size_t end) {
   build(half, end);
 }
 
-double MeshDistance::distance(const Vec3& point, double within) const {
+std::optional<Vec3> MeshDistance::nearest(const Vec3& point, double within) const {
   std::array<std::uint32_t, 64> waiting;  // enough: repeated halving of 2^32 triangles is at most 32 deep
   std::size_t count = 0;
   waiting[count++] = 0;
   double least = within * within;
+  std::optional<Vec3> found;
   while (count > 0) {
     const std::uint32_t at = waiting[--count];
     const Node& node = nodes_[at];
     if (squared_distance(point, node.box) >= least) continue;
-    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
-      least = std::min(least, squared_distance_to_triangle(point, triangles_[k].a, triangles_[k].b, triangles_[k].c));
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+      const Vec3 near = nearest_on_triangle(point, triangles_[k].a, triangles_[k].b, triangles_[k].c);
+      const double squared = dot(near - point, near - point);
+      if (squared < least) least = squared, found = near;
+    }
     if (node.count > 0) continue;
     const std::uint32_t children[] = {at + 1, node.first};
     const bool second_is_nearer =
@@ -113,7 +114,12 @@ double MeshDistance::distance(const Vec3& point, double within) const {
     waiting[count++] = children[second_is_nearer ? 0 : 1];
     waiting[count++] = children[second_is_nearer ? 1 : 0];
   }
-  return std::sqrt(least);
+  return found;
+}
+
+double MeshDistance::distance(const Vec3& point, double within) const {
+  const std::optional<Vec3> found = nearest(point, within);
+  return found ? length(*found - point) : within;
 }
 
 }  // namespace tessera::render

@@ -1,7 +1,8 @@
 #pragma once
-// The distance of points from a mesh.
+// The point of a mesh that is nearest to a given one, and its distance.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "tessera/mesh.h"
@@ -18,6 +19,8 @@ class MeshDistance {
   /// The distance from a point in the model's coordinates to the nearest point of the mesh, or `within` if none is that
   /// near.
   double distance(const Vec3& point, double within) const;
+  /// The point of the mesh nearest to one in the model's coordinates, if it is nearer than `within`.
+  std::optional<Vec3> nearest(const Vec3& point, double within) const;
 
  private:
   struct Triangle {

@@ -46,11 +46,15 @@ std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(std::clamp(x, 
 void draw_edges(const View& view, Workspace& work) {
   const Vec3 ink = view.settings.shade == Shade::lambert ? Vec3{0.012, 0.014, 0.02} : Vec3{0.10, 0.11, 0.14};
   const double width = std::max(1.2, std::min(view.settings.width, view.settings.height) / 800.0);  // pixels
+  constexpr double slant = 8;  // on surfaces that are seen at less than 7 degrees, lines are thinner
   for (std::size_t k = 0; k < work.hits.size(); ++k) {
     const Hit& hit = work.hits[k];
     if (hit.kind != HitKind::hit) continue;
-    const Vec3 &along = work.rays[k].direction, apart = hit.position - view.settings.nearest_edge(hit);
-    if (length(apart - dot(apart, along) * along) < 0.5 * width * hit.t * view.camera.pixel()) work.colours[k] = ink;
+    const double reach = 0.5 * width * hit.t * view.camera.pixel();
+    const std::optional<Vec3> edge = view.settings.nearest_edge(hit, slant * reach);
+    if (!edge) continue;
+    const Vec3 &along = work.rays[k].direction, apart = hit.position - *edge;
+    if (length(apart - dot(apart, along) * along) < reach) work.colours[k] = ink;
   }
 }
 

@@ -51,8 +51,9 @@ struct Settings {
   std::function<double(const Vec3&)> error = {};
   /// The unit normal to shade at a hit; empty: the surface's. Called from any number of threads.
   std::function<Vec3(const Hit&)> normal = {};
-  /// The point nearest to a hit on the edges to draw as lines; empty: no lines. Called from any number of threads.
-  std::function<Vec3(const Hit&)> nearest_edge = {};
+  /// The point nearest to a hit on the edges to draw as lines, if it is nearer than a distance; empty: no lines. Called
+  /// from any number of threads.
+  std::function<std::optional<Vec3>(const Hit&, double within)> nearest_edge = {};
 };
 
 /// Rows from the top, three bytes per pixel, sRGB.

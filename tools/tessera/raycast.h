@@ -7,6 +7,7 @@
 
 #include "loading.h"
 #include "mesh_error.h"
+#include "render/mesh_distance.h"
 #include "render/mesh_patches.h"
 #include "render/render.h"
 #include "tessera/ray_scene.h"
@@ -33,16 +34,18 @@ struct RaycastScene {
   PatchSet set;
   RayScene rays;
   std::optional<render::MeshPatches> meshes;
-  std::optional<MeshError> error;  ///< the error to shade, if any
-  double mesh_bound = 0;           ///< of the mesh that a trimmed model is drawn by; 0 if it is not
-  bool ignores_trims = false;      ///< whether trimmed surfaces are taken whole
+  std::optional<MeshError> error;                    ///< the error to shade, if any
+  std::optional<render::MeshDistance> borders = {};  ///< where surfaces end, to draw as lines
+  double mesh_bound = 0;                             ///< of the mesh that surfaces are drawn by; 0 if they are not
+  bool keeps_trims = false;                          ///< whether that mesh is of what loops keep
+  bool ignores_trims = false;                        ///< whether trimmed surfaces are taken whole
 
   /// The options' settings, with what this scene adds.
   render::Settings settings(const RaycastOptions& options) const;
   /// Captions for the lower border of the picture, the longest first. The first that fits is drawn.
   std::vector<std::string> captions() const;
-  /// "2 surfaces are trimmed: ..." and how they are drawn; empty if all are whole.
-  std::string trims_caption() const;
+  /// How surfaces are drawn, as "2 surfaces are trimmed: taken whole"; empty if rays meet all of them as they are.
+  std::string surfaces_caption() const;
   std::string counted_parts() const;  ///< "32 patches", "1 triangle"
 };
 

@@ -46,10 +46,10 @@ Status write_colours(const Job& job, const render::Settings& settings, const Ray
   if (const auto bar = colour_bar(settings.shade, scene)) render::add_colour_bar(*image, *bar);
   if (const std::vector<std::string> captions = scene.captions(); !captions.empty())
     render::add_caption(*image, captions);
-  const std::string trims = scene.trims_caption();
+  const std::string warning = scene.surfaces_caption();
   const auto phase = timings.phase("write");
   Status status =
-      render::write_png(*image, out, trims.empty() ? render::PngTexts{} : render::PngTexts{{"Warning", trims}});
+      render::write_png(*image, out, warning.empty() ? render::PngTexts{} : render::PngTexts{{"Warning", warning}});
   return status.ok() ? out.commit() : status;
 }
 

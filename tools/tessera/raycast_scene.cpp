@@ -5,6 +5,7 @@
 #include "output.h"
 #include "progress.h"
 #include "raycast.h"
+#include "render/face_borders.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
 
@@ -91,31 +92,48 @@ bool shows_shape(const Job& job, const RaycastOptions& options) {
   return !needs_surfaces && options.rays.empty() && !is_exr(format_path(job.output, options.format));
 }
 
-/// Makes a scene of the mesh of a trimmed model: exact rays see its patches whole.
-Result<RaycastScene> make_trimmed_scene(Loaded loaded, const PatchSet& surfaces, const RaycastOptions& options,
-                                        Timings& timings) {
+/// The lines where surfaces end, if any does. A triangle's face is the surface that it lies on.
+Result<std::optional<render::MeshDistance>> borders_of(const Mesh& mesh, const PatchSet& surfaces) {
+  std::vector<std::uint32_t> faces;
+  faces.reserve(mesh.patches.size());
+  for (const std::uint32_t patch : mesh.patches) faces.push_back(surfaces.source(patch).surface);
+  const Mesh borders = render::face_borders(mesh, faces);
+  if (borders.indices.empty()) return std::optional<render::MeshDistance>();
+  Result<render::MeshDistance> made = render::MeshDistance::make(borders);
+  if (!made) return made.status();
+  return std::optional(*std::move(made));
+}
+
+/// Makes a scene of the mesh of surfaces: exact rays see trimmed patches whole, and do not know where surfaces end.
+Result<RaycastScene> make_drawn_scene(Loaded loaded, const PatchSet& surfaces, const RaycastOptions& options,
+                                      Timings& timings) {
   constexpr double share_of_size = 2e-4;  // below a pixel in pictures of up to 2000 pixels
   render::MeshPatches meshes;
+  std::optional<render::MeshDistance> borders;
   double bound = 0;
   {
     const auto phase = timings.phase("mesh");
-    Progress progress("meshing what trims keep");
-    TessellationOptions fine;
-    fine.tolerance = share_of_size;
-    fine.relative = true;
-    const Result<Tessellation> plan = Tessellation::make(surfaces, fine, progress.execution());
+    Progress progress("meshing the surfaces");
+    const Result<Tessellation> plan =
+        Tessellation::make(surfaces, {.tolerance = share_of_size, .relative = true}, progress.execution());
     if (!plan) return in_file(loaded.files[0], plan.status());
     Result<Mesh> mesh = plan->allocate();
     if (!mesh) return mesh.status();
     if (Status status = plan->run(surfaces, mesh->views()); !status.ok()) return status;
     if (Status status = meshes.add(*mesh); !status.ok()) return status;
     bound = plan->bound();
+    if (options.edges) {
+      Result<std::optional<render::MeshDistance>> made = borders_of(*mesh, surfaces);
+      if (!made) return made.status();
+      borders = *std::move(made);
+    }
   }
   Result<PatchSet> set = meshes.pack();
   if (!set) return in_file(loaded.files[0], set.status());
   Result<RayScene> rays = build(*set, options, loaded.files[0], timings);
   if (!rays) return rays.status();
-  return RaycastScene{std::move(loaded), *std::move(set), *std::move(rays), std::move(meshes), {}, bound};
+  return RaycastScene{std::move(loaded),  *std::move(set), *std::move(rays),        std::move(meshes), {},
+                      std::move(borders), bound,           surfaces.cut_count() > 0};
 }
 
 Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
@@ -124,8 +142,11 @@ Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& op
   Result<PatchSet> set = pack(*loaded, options.models, timings);
   if (!set) return set.status();
   const bool is_trimmed = set->cut_count() > 0;
+  if ((is_trimmed || options.edges) && shows_shape(job, options))
+    return make_drawn_scene(*std::move(loaded), *set, options, timings);
+  if (options.edges)
+    return Status(StatusCode::invalid_argument, "--edges needs --shade lambert, normals or clay, and a .png picture");
   if (is_trimmed) {
-    if (shows_shape(job, options)) return make_trimmed_scene(*std::move(loaded), *set, options, timings);
     warn(loaded->files[0] + ": " + trims_text(loaded->trimmed()) + ": taken whole");
     ModelOptions whole = options.models;
     whole.untrimmed = true;
@@ -155,7 +176,10 @@ render::Settings RaycastScene::settings(const RaycastOptions& options) const {
   render::Settings own = options.settings;
   if (error) own.error = [this](const Vec3& point) { return error->share(point); };
   if (meshes) own.normal = [this](const Hit& hit) { return meshes->normal(hit); };
-  if (meshes && options.edges) own.nearest_edge = [this](const Hit& hit) { return meshes->nearest_edge(hit); };
+  if (borders)
+    own.nearest_edge = [this](const Hit& hit, double within) { return borders->nearest(hit.position, within); };
+  else if (meshes && options.edges)
+    own.nearest_edge = [this](const Hit& hit, double) { return meshes->nearest_edge(hit); };
   return own;
 }
 
@@ -163,16 +187,18 @@ std::vector<std::string> RaycastScene::captions() const {
   std::vector<std::string> texts;
   if (error) texts = {error->caption() + (ignores_trims ? ", trims ignored" : "")};
   if (mesh_bound > 0) {
-    texts.insert(texts.end(), {trims_caption(), "trimmed, drawn by a mesh", "mesh"});
+    texts.insert(texts.end(),
+                 {surfaces_caption(), keeps_trims ? "trimmed, drawn by a mesh" : "drawn by a mesh", "mesh"});
   } else if (ignores_trims) {
-    texts.insert(texts.end(), {trims_caption(), "trims ignored", "trims!"});
+    texts.insert(texts.end(), {surfaces_caption(), "trims ignored", "trims!"});
   }
   return texts;
 }
 
-std::string RaycastScene::trims_caption() const {
-  if (mesh_bound > 0)
-    return trims_text(loaded.trimmed()) + ": drawn by a mesh within " + readable(mesh_bound, 2) + " of what is kept";
+std::string RaycastScene::surfaces_caption() const {
+  const std::string mesh = "drawn by a mesh within " + readable(mesh_bound, 2) + " of ";
+  if (mesh_bound > 0 && keeps_trims) return trims_text(loaded.trimmed()) + ": " + mesh + "what is kept";
+  if (mesh_bound > 0) return mesh + "the surfaces";
   if (ignores_trims) return trims_text(loaded.trimmed()) + ": taken whole";
   return {};
 }
@@ -190,9 +216,6 @@ Result<RaycastScene> make_scene(const Job& job, const RaycastOptions& options, T
   if (!meshes.empty()) {
     if (Status status = check_mesh_options(meshes[0], job, options); !status.ok()) return status;
   }
-  if (meshes.empty() && options.edges)
-    return Status(StatusCode::invalid_argument,
-                  "--edges draws the edges of meshes, found the surfaces of " + models[0]);
   return meshes.empty() ? make_surface_scene(job, options, timings) : make_mesh_scene(job, options, timings);
 }
 
