@@ -96,6 +96,37 @@ TEST(MeshPatches, EdgesAreDark) {
   EXPECT_GT(red(width / 2 + 12, width / 2), 140);  // beside it
 }
 
+TEST(MeshPatches, TrianglesKnowTheirPatches) {
+  Mesh mesh = square(false);
+  mesh.indices.insert(mesh.indices.begin(), {0, 1, 1});  // no area, and left out
+  mesh.patches = {9, 5, 7};
+  Hit hit;
+  for (const std::uint32_t k : {0u, 1u}) {
+    hit.patch = k;
+    EXPECT_EQ(patches_of(mesh).patch(hit), mesh.patches[k + 1]);
+  }
+}
+
+TEST(MeshPatches, ColoursAreShown) {
+  const MeshPatches patches = patches_of(square(false));
+  const PatchSet set = value_of(patches.pack());
+  const RayScene scene = value_of(RayScene::make(set));
+  for (const Shade shade : {Shade::clay, Shade::lambert}) {
+    Settings settings;
+    settings.width = width, settings.height = width, settings.samples = 2, settings.shade = shade;
+    settings.up = Up::y;  // the square stands on the floor
+    settings.camera = Camera{{0.5, 0.5, 2}, {0.5, 0.5, 0}, 40, {0, 1, 0}};
+    settings.colour = [](const Hit& hit) {
+      return hit.patch == 0 ? std::optional(Colour{0.9f, 0.1f, 0.1f}) : std::nullopt;
+    };
+    const Image image = value_of(render(scene, set.box(), settings));
+    const auto at = [&](int x, int y) { return &image.rgb[3 * static_cast<std::size_t>(y * width + x)]; };
+    const std::uint8_t *const red = at(width / 2 + 12, width / 2 + 8), *const plain = at(width / 2 - 12, width / 2 - 8);
+    EXPECT_GT(red[0], red[1] + 60);
+    EXPECT_LT(std::abs(plain[0] - plain[1]), 30);
+  }
+}
+
 TEST(MeshPatches, MeshesThatCannotBeDrawn) {
   Mesh mesh = square(false);
   mesh.indices[4] = 4;

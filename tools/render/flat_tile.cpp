@@ -39,11 +39,11 @@ Vec3 surface_colour(const Hit& hit, const View& view) {
   return settings.shade == Shade::error ? error_colour(settings.error(hit.position)) : patch_colour(hit.patch);
 }
 
-/// Grey, by a light above the eye.
-Vec3 clay_colour(const Vec3& normal, const Vec3& direction, const Vec3& up) {
+/// Grey or the model's colour, by a light above the eye.
+Vec3 clay_colour(const Vec3& normal, const Vec3& direction, const Vec3& up, const std::optional<Vec3>& colour) {
   const Vec3 towards = dot(normal, direction) > 0 ? -normal : normal;
   const double light = std::max(dot(towards, normalized(0.8 * up - direction)), 0.0);
-  return (0.16 + 0.8 * light) * Vec3{1, 0.98, 0.95};
+  return (0.16 + 0.8 * light) * colour.value_or(Vec3{1, 0.98, 0.95});
 }
 
 Vec3 colour(const Hit& hit, const Vec3& direction, const View& view) {
@@ -51,7 +51,8 @@ Vec3 colour(const Hit& hit, const Vec3& direction, const View& view) {
   if (hit.kind != HitKind::hit) return view.settings.background;
   const Vec3 normal = shading_normal(view.settings, hit);
   if (view.settings.shade == Shade::normals) return 0.5 * (normal + Vec3{1, 1, 1});
-  if (view.settings.shade == Shade::clay) return clay_colour(normal, direction, view.environment.up());
+  if (view.settings.shade == Shade::clay)
+    return clay_colour(normal, direction, view.environment.up(), srgb_colour(view.settings, hit));
   // Darker where the surface turns away, so that its shape is visible.
   const double facing = 0.62 + 0.38 * std::abs(dot(normal, direction));
   return facing * surface_colour(hit, view);

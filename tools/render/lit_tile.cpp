@@ -17,6 +17,9 @@ constexpr double facet_distance = 1.5e-3;       // of the size: the height above
 constexpr double glaze_at_right_angle = 0.05;   // reflectance of a glaze of refractive index 1.6
 constexpr double highlight_roughness = 0.12;
 
+/// IEC 61966-2-1.
+double to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
+
 class LitTile {
  public:
   LitTile(const View& view, Workspace& work) : view_(view), world_(view.environment), work_(work) {}
@@ -32,7 +35,12 @@ class LitTile {
   Status reflections(const std::vector<Point>& points, std::vector<Vec3>& light);
   Status trace_mirrors(const std::vector<Point>& points);
   Status occluded();
-  Vec3 albedo(const Point& point) const { return point.on_model ? porcelain : world_.floor_colour(); }
+  /// Reflected shares of the model's colour; a white face reflects a little more than porcelain.
+  Vec3 albedo(const Hit& hit) const {
+    const std::optional<Vec3> colour = srgb_colour(view_.settings, hit);
+    constexpr double white = 0.8;
+    return colour ? white * Vec3{to_linear(colour->x), to_linear(colour->y), to_linear(colour->z)} : porcelain;
+  }
 
   const View& view_;
   const Environment& world_;
@@ -60,6 +68,7 @@ bool LitTile::meet(std::size_t sample, const Ray& ray, const Hit& hit, Point& po
   if (const auto t = world_.floor(ray.origin, ray.direction, farthest)) {
     point.position = ray.origin + *t * ray.direction;
     point.normal = world_.up();
+    point.albedo = world_.floor_colour();
     point.on_model = false;
     return true;
   }
@@ -68,6 +77,7 @@ bool LitTile::meet(std::size_t sample, const Ray& ray, const Hit& hit, Point& po
   const Vec3 normal = shading_normal(view_.settings, hit);
   point.normal = dot(normal, ray.direction) > 0 ? -normal : normal;
   if (normal == Vec3{}) point.normal = -ray.direction;
+  point.albedo = albedo(hit);
   point.on_model = true;
   return true;
 }
@@ -101,7 +111,7 @@ Status LitTile::sunlight(const std::vector<Point>& points, Purpose purpose, std:
     const Point& point = points[k];
     const double cosine = dot(point.normal, work_.secondary_rays[k].direction);
     if (work_.occluded[k] || cosine <= 0) continue;
-    light[k] += cosine * multiply(albedo(point), world_.sun_light());
+    light[k] += cosine * multiply(point.albedo, world_.sun_light());
     if (point.on_model) {
       light[k] += highlight(point.normal, -point.direction, world_.sun_direction()) * world_.sun_light();
     }
@@ -116,7 +126,7 @@ Status LitTile::ambient(const std::vector<Point>& points, std::vector<Vec3>& lig
     const Vec3 above = world_.surroundings(world_.up()), below = world_.surroundings(-world_.up());
     for (std::size_t k = 0; k < points.size(); ++k) {
       const Vec3 around = mix(below, above, 0.5 + 0.5 * dot(points[k].normal, world_.up()));
-      light[k] += multiply(albedo(points[k]), mix(shaded_neighbour, around, 0.75));
+      light[k] += multiply(points[k].albedo, mix(shaded_neighbour, around, 0.75));
     }
     return {};
   }
@@ -127,7 +137,7 @@ Status LitTile::ambient(const std::vector<Point>& points, std::vector<Vec3>& lig
   if (Status status = occluded(); !status.ok()) return status;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Vec3 from = work_.occluded[k] ? shaded_neighbour : world_.surroundings(work_.secondary_rays[k].direction);
-    light[k] += multiply(albedo(points[k]), from);
+    light[k] += multiply(points[k].albedo, from);
   }
   return {};
 }
@@ -171,7 +181,7 @@ Status LitTile::reflections(const std::vector<Point>& points, std::vector<Vec3>&
   for (std::size_t k = 0; k < met.size(); ++k) {
     const Point& point = met[k];
     const Vec3 around = mix(shaded_neighbour, world_.surroundings(point.normal), 0.5);
-    const Vec3 all = work_.mirrored_light[k] + multiply(albedo(point), around);
+    const Vec3 all = work_.mirrored_light[k] + multiply(point.albedo, around);
     work_.mirrored[work_.mirrored_by[k]] = point.on_model ? all : world_.in_haze(all, point.position, point.direction);
   }
   for (std::size_t k = 0; k < work_.mirrors.size(); ++k) {

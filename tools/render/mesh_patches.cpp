@@ -50,19 +50,22 @@ Status MeshPatches::add(const Mesh& mesh) {
   for (const auto* const indices : {&mesh.indices, &mesh.quads})
     if (Status status = check_indices(*indices, mesh.vertex_count()); !status.ok()) return status;
   if (Status status = check_positions(mesh); !status.ok()) return status;
-  for (std::size_t k = 0; k + 2 < mesh.indices.size(); k += 3)
-    add_triangle(mesh, {mesh.indices[k], mesh.indices[k + 1], mesh.indices[k + 2]}, {true, true, true});
-  for (std::size_t k = 0; k + 3 < mesh.quads.size(); k += 4) {
-    const std::uint32_t* const quad = &mesh.quads[k];
-    add_triangle(mesh, {quad[0], quad[1], quad[2]}, {true, true, false});
-    add_triangle(mesh, {quad[0], quad[2], quad[3]}, {false, true, true});
+  const bool has_patches = mesh.has_patches();
+  for (std::size_t k = 0; k < mesh.triangle_count(); ++k) {
+    const std::uint32_t* const corners = &mesh.indices[3 * k];
+    add_triangle(mesh, {corners[0], corners[1], corners[2]}, {true, true, true}, has_patches ? mesh.patches[k] : 0);
+  }
+  for (std::size_t k = 0; k < mesh.quad_count(); ++k) {
+    const std::uint32_t *const quad = &mesh.quads[4 * k], patch = has_patches ? mesh.quad_patches[k] : 0;
+    add_triangle(mesh, {quad[0], quad[1], quad[2]}, {true, true, false}, patch);
+    add_triangle(mesh, {quad[0], quad[2], quad[3]}, {false, true, true}, patch);
   }
   return {};
 }
 
 void MeshPatches::add_triangle(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners,
-                               const std::array<bool, 3>& is_edge) {
-  Triangle triangle{{}, {}, is_edge};
+                               const std::array<bool, 3>& is_edge, std::uint32_t patch) {
+  Triangle triangle{{}, {}, is_edge, patch};
   for (std::size_t k = 0; k < 3; ++k) {
     triangle.corners[k] = position(mesh, corners[k]);
     triangle.normals[k] = normal_of(mesh, corners[k]);

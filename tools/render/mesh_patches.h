@@ -27,6 +27,8 @@ class MeshPatches {
 
   /// The normal at a hit: interpolated from the vertices' normals, or the triangle's own if they have none.
   Vec3 normal(const Hit& hit) const;
+  /// The patch of the hit triangle, by Mesh::patches. Requires meshes that have patches.
+  std::uint32_t patch(const Hit& hit) const { return triangles_[hit.patch].patch; }
   /// The point of the triangle's edges that is nearest to a hit. The diagonal of a quad is no edge.
   Vec3 nearest_edge(const Hit& hit) const;
 
@@ -35,8 +37,10 @@ class MeshPatches {
     std::array<Vec3, 3> corners;
     std::array<Vec3, 3> normals;  ///< zero: the triangle's own
     std::array<bool, 3> is_edge;  ///< from corner k to the next
+    std::uint32_t patch = 0;      ///< 0 in meshes without patches
   };
-  void add_triangle(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners, const std::array<bool, 3>& is_edge);
+  void add_triangle(const Mesh& mesh, const std::array<std::uint32_t, 3>& corners, const std::array<bool, 3>& is_edge,
+                    std::uint32_t patch);
 
   std::vector<Triangle> triangles_;
 };

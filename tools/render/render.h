@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/up_axis.h"
+#include "tessera/colour.h"
 #include "tessera/execution.h"
 #include "tessera/files.h"
 #include "tessera/geometry.h"
@@ -26,13 +27,13 @@ struct Camera {
 };
 
 enum class Shade : std::uint8_t {
-  lambert,    ///< glazed porcelain on a floor under a sky: sun with soft shadow, ambient light, one reflection
+  lambert,  ///< glazed porcelain, or Settings::colour, on a floor under a sky: sun with soft shadow, ambient light, one reflection
   normals,    ///< the unit normal, (n + 1) / 2 as red, green, blue
   uv,         ///< patch parameters: u red, v green, a checkerboard of eighths
   patch,      ///< a colour per patch
   error,      ///< distance of the surface by Settings::error: dark where small, red where largest
   curvature,  ///< Gaussian: domes red, saddles blue, grey where it is zero
-  clay,       ///< grey, lit from above the eye; no floor
+  clay,       ///< grey, or Settings::colour, lit from above the eye; no floor
   steps,      ///< Hit::steps, the cost of each ray, hits and misses: blue at 1, red from max_steps_shown on
 };
 
@@ -51,6 +52,9 @@ struct Settings {
   std::function<double(const Vec3&)> error = {};
   /// The unit normal to shade at a hit; empty: the surface's. Called from any number of threads.
   std::function<Vec3(const Hit&)> normal = {};
+  /// The colour at a hit in sRGB, for Shade::lambert and Shade::clay; without a value: the shade's own. Called from any
+  /// number of threads.
+  std::function<std::optional<Colour>(const Hit&)> colour = {};
   /// The point nearest to a hit on the edges to draw as lines, if it is nearer than a distance; empty: no lines. Called
   /// from any number of threads.
   std::function<std::optional<Vec3>(const Hit&, double within)> nearest_edge = {};

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/camera.h"
@@ -38,6 +39,7 @@ struct Point {
   Vec3 position;
   Vec3 normal;     ///< towards the viewer
   Vec3 direction;  ///< of the ray that arrived here
+  Vec3 albedo;     ///< reflected shares of red, green and blue, linear
   bool on_model = false;
 };
 
@@ -65,6 +67,12 @@ Status trace(const View& view, const Tile& tile, Workspace& work);
 /// The normal that is shaded at a hit: the surface's, or that of Settings::normal.
 inline Vec3 shading_normal(const Settings& settings, const Hit& hit) {
   return settings.normal ? settings.normal(hit) : hit.normal;
+}
+
+/// The colour at a hit, if the settings have one there.
+inline std::optional<Vec3> srgb_colour(const Settings& settings, const Hit& hit) {
+  const std::optional<Colour> colour = settings.colour ? settings.colour(hit) : std::nullopt;
+  return colour ? std::optional<Vec3>({colour->red, colour->green, colour->blue}) : std::nullopt;
 }
 
 /// Fill colours from samples, rays and hits.

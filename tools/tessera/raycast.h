@@ -36,6 +36,7 @@ struct RaycastScene {
   std::optional<render::MeshPatches> meshes;
   std::optional<MeshError> error;                    ///< the error to shade, if any
   std::optional<render::MeshDistance> borders = {};  ///< where surfaces end, to draw as lines
+  std::vector<std::optional<Colour>> colours = {};   ///< of the patches of surfaces; none: no face has a colour
   double mesh_bound = 0;                             ///< of the mesh that surfaces are drawn by; 0 if they are not
   bool keeps_trims = false;                          ///< whether that mesh is of what loops keep
   bool ignores_trims = false;                        ///< whether trimmed surfaces are taken whole

@@ -84,6 +84,19 @@ Result<RaycastScene> make_mesh_scene(const Job& job, const RaycastOptions& optio
   return RaycastScene{std::move(loaded), *std::move(set), *std::move(rays), std::move(meshes), {}};
 }
 
+/// The colours of patches: those of faces, or else of their instances. None if no face has one.
+std::vector<std::optional<Colour>> colours_of(const Model& model, const PatchSet& set) {
+  std::vector<std::optional<Colour>> of_surfaces(model.surfaces.size()), colours;
+  for (const Instance& instance : model.instances) {
+    const std::vector<ShapeFace>& faces = model.shapes[instance.shape].faces;
+    for (std::size_t k = 0; k < faces.size(); ++k)
+      of_surfaces[instance.first_surface + k] = faces[k].colour ? faces[k].colour : instance.colour;
+  }
+  if (std::ranges::none_of(of_surfaces, [](const auto& colour) { return colour.has_value(); })) return colours;
+  for (std::size_t k = 0; k < set.patch_count(); ++k) colours.push_back(of_surfaces[set.source(k).surface]);
+  return colours;
+}
+
 /// Whether a picture shows the shape alone, so that a mesh can stand for the surfaces.
 bool shows_shape(const Job& job, const RaycastOptions& options) {
   using enum render::Shade;
@@ -132,8 +145,11 @@ Result<RaycastScene> make_drawn_scene(Loaded loaded, const PatchSet& surfaces, c
   if (!set) return in_file(loaded.files[0], set.status());
   Result<RayScene> rays = build(*set, options, loaded.files[0], timings);
   if (!rays) return rays.status();
-  return RaycastScene{std::move(loaded),  *std::move(set), *std::move(rays),        std::move(meshes), {},
-                      std::move(borders), bound,           surfaces.cut_count() > 0};
+  RaycastScene scene{std::move(loaded), *std::move(set), *std::move(rays), std::move(meshes), {}, std::move(borders)};
+  scene.colours = colours_of(scene.loaded.model, surfaces);
+  scene.mesh_bound = bound;
+  scene.keeps_trims = surfaces.cut_count() > 0;
+  return scene;
 }
 
 Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
@@ -156,6 +172,7 @@ Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& op
   Result<RayScene> rays = build(*set, options, loaded->files[0], timings);
   if (!rays) return rays.status();
   RaycastScene scene{*std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
+  scene.colours = colours_of(scene.loaded.model, scene.set);
   scene.ignores_trims = is_trimmed;
   if (options.settings.shade == render::Shade::error) {
     const auto phase = timings.phase("measure");
@@ -176,6 +193,8 @@ render::Settings RaycastScene::settings(const RaycastOptions& options) const {
   render::Settings own = options.settings;
   if (error) own.error = [this](const Vec3& point) { return error->share(point); };
   if (meshes) own.normal = [this](const Hit& hit) { return meshes->normal(hit); };
+  if (!colours.empty())
+    own.colour = [this](const Hit& hit) { return colours[meshes ? meshes->patch(hit) : hit.patch]; };
   if (borders)
     own.nearest_edge = [this](const Hit& hit, double within) { return borders->nearest(hit.position, within); };
   else if (meshes && options.edges)
