@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "tools/picture.h"
 #include "tools/tool_test.h"
 
 namespace tessera::test {
@@ -40,6 +41,30 @@ TEST_F(CadTool, RealPartsAreMeshedAndDrawn) {
     const ToolRun picture = run({"raycast", path, "-o", "a.png", "--size", "64x48"});
     expect_warnings(picture, path);
     EXPECT_GT(content_of(folder_ / "a.png").size(), 500u);
+  }
+}
+
+TEST_F(CadTool, TheBearingBlockIsMeshedClosedAndDrawnInItsColours) {
+  const std::string block = TESSERA_SOURCE_DIR "/tools/models/bearing_block.step";
+  const json facts = json::parse(output_of({"tessellate", block, "-o", "a.ply", "--json"}));
+  EXPECT_EQ(facts["shapes"], 4);
+  EXPECT_EQ(facts["instances"], 5);
+  EXPECT_EQ(facts["solids"], 5);
+  EXPECT_EQ(facts["open_edges"], 0);
+  // Solids that touch have edges in one place, which one mesh of them all shows as edges of four triangles.
+  EXPECT_EQ(json::parse(output_of({"check", "a.ply", "--json"}))["open_edges"], 0);
+  for (const char* const shade : {"clay", "lambert"}) {
+    output_of({"raycast", block, "-o", "a.png", "--size", "96x52", "--shade", shade, "--quality", "draft",
+               "--camera=-115,-210,150,0,-4,31,24"});
+    const Picture picture = read_picture(folder_ / "a.png");
+    std::size_t blue = 0, brass = 0;
+    for (std::size_t k = 0; k < picture.rgb.size(); k += 3) {
+      const int red = picture.rgb[k], green = picture.rgb[k + 1], other = picture.rgb[k + 2];
+      blue += other > green + 30 && green > red + 15;
+      brass += red > green + 15 && green > other + 30;
+    }
+    EXPECT_GT(blue, 500u) << shade;   // the block has a fifth of 4992 pixels
+    EXPECT_GT(brass, 150u) << shade;  // the bush has about a twentieth
   }
 }
 
