@@ -167,6 +167,15 @@ TEST(ClosedShape, LoopsWithoutCoedgesStayOpen) {
   EXPECT_EQ(made.report.non_finite_vertices, 0u);
 }
 
+/// States a coedge's parameter anew: even along its edge.
+void restate(TrimLoop& loop, std::size_t at, const Shape& shape) {
+  Coedge& coedge = loop.coedges[at];
+  const Interval &edge = shape.edges[coedge.edge].range, &curve = loop.curves[at].domain();
+  const double first = coedge.reversed ? curve.to : curve.from, last = coedge.reversed ? curve.from : curve.to;
+  coedge.parameter = value_of(Curve::b_spline(1, std::vector<Vec3>{{first, 0, 0}, {last, 0, 0}},
+                                              std::vector<double>{edge.from, edge.from, edge.to, edge.to}));
+}
+
 /// Edges may be those of other places altogether: then gaps are as large as the plate, and the mesh is closed all the
 /// same.
 TEST(ClosedShape, WrongCoedgesMakeGapsAndNoHoles) {
@@ -191,6 +200,7 @@ TEST(ClosedShape, WrongCoedgesMakeGapsAndNoHoles) {
         loop.coedges[a].edge = static_cast<std::uint32_t>(random() % shape.edges.size());
         break;
     }
+    for (const std::size_t c : {a, b}) restate(loop, c, shape);
     (is_trimmed ? face.trims : face.outline) = std::move(loops);
     const PatchSet set = value_of(make_patch_set(shape));
     const Result<Tessellation> plan = Tessellation::make(set, {.tolerance = 0.01});
