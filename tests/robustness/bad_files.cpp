@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "io/mesh/mesh_formats.h"
+#include "robustness/bad_assemblies.h"
 #include "robustness/bad_input.h"
 #include "support/random_patches.h"
 #include "support/scratch_folder.h"
@@ -216,6 +217,23 @@ void writing(Table& table) {
            [](Mesh& m) { m.positions[4] = static_cast<float>(not_a_number); });
   mesh_row("an origin of 1e300", non_finite, "m.stl", [](Mesh& m) { m.origin.x = 1e300; });
   mesh_row("a part that is out of range", invalid_argument, "m.gltf", [](Mesh& m) { m.parts = {{"a", 0, 9}}; });
+
+  table.of("write_assembly(assembly, path)");
+  for (const std::string path : {"a.glb", "a.ply"}) {
+    bad_assemblies([&](const std::string& input, StatusCode code, const MeshAssembly& assembly) {
+      table.row(input + ", for " + path.substr(1), code, write_assembly(assembly, path),
+                [&] { return here.folder.names() == before; });
+    });
+    odd_placements([&](const std::string& input, const MeshAssembly& assembly) {
+      const Status status = write_assembly(assembly, path);
+      const Result<Mesh> back = read_mesh(path);
+      std::filesystem::remove(path);
+      table.gives(input + ", for " + path.substr(1), "accepted",
+                  status.ok() && back && value_of(check(*back)).non_finite_vertices == 0);
+    });
+  }
+  table.row("an extension that is not known", unsupported, write_assembly(sound_assembly(), "a.off"));
+  table.row("nothing", invalid_argument, write_assembly({}, "a.ply"), [&] { return here.folder.names() == before; });
 
   Random random(5);
   const BezierPatch plain = random_polynomial(random, 2, 2), rational = random_rational(random, 2, 2);

@@ -171,6 +171,7 @@ TEST(MeshAssemblies, WrongOnesAreRefused) {
   EXPECT_EQ(status.index(), 1);
   assembly.instances[1] = {.placement = Affine::translated({0, std::numeric_limits<double>::infinity(), 0})};
   EXPECT_EQ(flatten(assembly).status().message(), "instance 1: its placement is not finite");
+  EXPECT_EQ(flatten(assembly).status().code(), StatusCode::non_finite);
   assembly.instances.pop_back();
   assembly.shapes[0].mesh.normals.pop_back();
   status = flatten(assembly).status();

@@ -40,7 +40,7 @@ Result<Shape> joined_edges(const Shape& shape, double distance);
 
 /// Returns a distance for joined_edges() where nothing better is known: 1e-4 of the size of the faces' loops, the
 /// diagonal of a box of 5 points per curve; 0 without faces. Edges of real IGES files are apart by up to 6e-5 of it.
-/// Errors: those of evaluate_jet() as above.
+/// Errors: invalid_argument (ids), those of evaluate_jet() as above.
 Result<double> joining_distance(const Shape& shape);
 
 /// Makes a shape of surfaces without edges, and joins them as above. Errors: as above.

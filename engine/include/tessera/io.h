@@ -139,7 +139,7 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 /// - other formats: one mesh, as flatten() makes it, in the assembly's unit; colours are not kept.
 ///
 /// Errors: those of write_mesh() (index = the shape); invalid_argument (an instance of no shape, a colour beyond 0 to
-/// 1; index = the instance), non_finite (a placement).
+/// 1; index = the instance), non_finite (a placement that is not finite, or beyond the range of float).
 Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path);
 
 /// How read_mesh() treats polygons, and where it reports what it skips.

@@ -74,8 +74,9 @@ Result<std::vector<MeshPart>> parts_by_face(const Mesh& mesh, const PatchSet& se
 /// - Normals and parameters are kept if all meshes have them. Patches are not.
 /// - Parts: those of each instance, named "instance/part". A mesh without parts becomes one, with the instance's name.
 ///
-/// Errors: invalid_argument (an instance of no shape; a placement that is not finite; index = the instance), those that
-/// write_mesh() reports for a mesh, count_mismatch (more than 2^32 - 1 vertices).
+/// Errors: invalid_argument (an instance of no shape; index = the instance), non_finite (a placement, index = the
+/// instance; instances that together are beyond the range of float), those that write_mesh() reports for a mesh (index
+/// = the shape), count_mismatch (more than 2^32 - 1 vertices).
 Result<Mesh> flatten(const MeshAssembly& assembly);
 
 }  // namespace tessera::inline abi_0_1

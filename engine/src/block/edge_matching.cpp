@@ -96,6 +96,7 @@ Result<double> joining_distance(const Shape& given) {
   return guarded([&]() -> Result<double> {
     constexpr double share = 1e-4;
     constexpr int steps = 4;
+    if (Status status = check_topology(given); !status.ok()) return status;
     Shape shape = given;
     if (Status status = name_all_edges(shape, 0); !status.ok()) return status;
     Box3 box;

@@ -1,6 +1,8 @@
 #include "block/edge_tables.h"
 
 #include <algorithm>
+#include <new>
+#include <utility>
 #include <vector>
 
 namespace tessera::inline abi_0_1 {
@@ -9,13 +11,17 @@ namespace {
 constexpr int max_depth = 10;
 constexpr std::size_t first_pieces = 4;
 
+/// Throws std::bad_alloc.
 Curve linear_spline(const std::vector<double>& s, const std::vector<double>& t, const std::vector<double>& weights) {
   std::vector<Vec3> points;
   for (const double x : t) points.push_back({x, 0, 0});
   std::vector<double> knots{s.front()};
   knots.insert(knots.end(), s.begin(), s.end());
   knots.push_back(s.back());
-  return *Curve::nurbs(1, points, weights, knots);
+  Result<Curve> spline = Curve::nurbs(1, points, weights, knots);
+  if (spline) return *std::move(spline);
+  if (spline.status().code() == StatusCode::out_of_memory || s.size() == 2) throw std::bad_alloc();
+  return linear_spline({s.front(), s.back()}, {t.front(), t.back()}, {1, 1});  // rounding makes steps in between equal
 }
 
 /// Builds the fractions piece by piece.

@@ -1,6 +1,7 @@
 #include "block/joined_loops.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "block/coedge_parameter.h"
@@ -17,12 +18,14 @@ struct Span {
   Coedge coedge;
 };
 
+/// Throws std::bad_alloc.
 Curve part_of(const Curve& curve, const Interval& range) {
   if (range == curve.domain()) return curve;
   const Result<Curve> part = curve.is_rational()
                                  ? Curve::nurbs(curve.degree(), curve.points(), curve.weights(), curve.knots(), range)
                                  : Curve::b_spline(curve.degree(), curve.points(), curve.knots(), range);
-  return part ? *part : curve;  // never: the range lies within the domain
+  if (!part) throw std::bad_alloc();  // no other error is possible: the range lies within the domain
+  return *part;
 }
 
 class LoopJoiner {

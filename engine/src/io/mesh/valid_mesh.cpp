@@ -131,11 +131,18 @@ Status check_colours(const Mesh& mesh) {
                  static_cast<std::size_t>(bad - mesh.parts.begin()));
 }
 
+bool is_in_float(const Affine& placement) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  const auto is_small = [](const Vec3& v) { return max_abs(v) <= largest; };
+  return std::ranges::all_of(placement.columns, is_small) && is_small(placement.translation);
+}
+
 Status check_instance(const MeshInstance& instance, std::size_t shapes) {
   if (instance.shape >= shapes)
     return {StatusCode::invalid_argument,
             "it is of shape " + std::to_string(instance.shape) + ", there are " + std::to_string(shapes)};
   if (!is_finite(instance.placement)) return {StatusCode::non_finite, "its placement is not finite"};
+  if (!is_in_float(instance.placement)) return {StatusCode::non_finite, "its placement is beyond the range of float"};
   if (!is_valid(instance.colour)) return {StatusCode::invalid_argument, "its colour is not within 0 to 1"};
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -12,14 +13,14 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-Status in_instance(std::size_t k, const std::string& name, const std::string& sentence) {
-  return {StatusCode::invalid_argument,
-          "instance " + std::to_string(k) + (name.empty() ? "" : " (" + name + ")") + ": " + sentence,
+Status in_instance(std::size_t k, const std::string& name, StatusCode code, const std::string& sentence) {
+  return {code, "instance " + std::to_string(k) + (name.empty() ? "" : " (" + name + ")") + ": " + sentence,
           static_cast<std::ptrdiff_t>(k)};
 }
 
 Status no_such_shape(std::size_t k, const std::string& name, std::size_t shape, std::size_t count) {
-  return in_instance(k, name, "it is of shape " + std::to_string(shape) + ", there are " + std::to_string(count));
+  return in_instance(k, name, StatusCode::invalid_argument,
+                     "it is of shape " + std::to_string(shape) + ", there are " + std::to_string(count));
 }
 
 Status check_mesh(const Mesh& mesh) {
@@ -29,8 +30,15 @@ Status check_mesh(const Mesh& mesh) {
                     (mesh.positions_f64.empty() || mesh.positions_f64.size() == 3 * vertices) &&
                     (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
                     (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices);
-  if (fits) return check_parts(mesh);
-  return {StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other"};
+  if (!fits) return {StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other"};
+  const auto is_beyond = [vertices](std::uint32_t index) { return index >= vertices; };
+  if (std::ranges::any_of(mesh.indices, is_beyond) || std::ranges::any_of(mesh.quads, is_beyond))
+    return {StatusCode::invalid_argument, "an index of the mesh is beyond its vertices"};
+  const auto is_finite = [](auto x) { return std::isfinite(x); };
+  for (const std::vector<float>* const values : {&mesh.positions, &mesh.normals})
+    if (!std::ranges::all_of(*values, is_finite))
+      return {StatusCode::non_finite, "a vertex of the mesh is not finite in float"};
+  return check_parts(mesh);
 }
 
 Status check_assembly(const MeshAssembly& assembly) {
@@ -42,7 +50,8 @@ Status check_assembly(const MeshAssembly& assembly) {
     const MeshInstance& instance = assembly.instances[k];
     if (instance.shape >= assembly.shapes.size())
       return no_such_shape(k, instance.name, instance.shape, assembly.shapes.size());
-    if (!is_finite(instance.placement)) return in_instance(k, instance.name, "its placement is not finite");
+    if (!is_finite(instance.placement))
+      return in_instance(k, instance.name, StatusCode::non_finite, "its placement is not finite");
     vertices += assembly.shapes[instance.shape].mesh.vertex_count();
   }
   if (vertices <= std::numeric_limits<std::uint32_t>::max()) return {};
@@ -55,9 +64,11 @@ Vec3 vector_at(const std::vector<Number>& values, std::size_t k) {
   return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
 }
 
+/// Whether the numbers are finite as they are stored.
 template <class Number>
-void append(std::vector<Number>& values, const Vec3& v) {
+bool append(std::vector<Number>& values, const Vec3& v) {
   for (const double x : {v.x, v.y, v.z}) values.push_back(static_cast<Number>(x));
+  return std::all_of(values.end() - 3, values.end(), [](Number x) { return std::isfinite(x); });
 }
 
 /// Adds instances to one mesh.
@@ -77,14 +88,16 @@ class Flattening {
     if (!box.empty()) flat_.origin = box.centre();
   }
 
-  void add(const MeshInstance& instance) {
+  /// Whether the instance's vertices are finite as they are stored.
+  bool add(const MeshInstance& instance) {
     const Mesh& mesh = mesh_of(instance);
     const std::size_t base = flat_.vertex_count();
-    add_vertices(mesh, instance.placement);
+    const bool finite = add_vertices(mesh, instance.placement);
     add_parts(flat_, mesh, instance);
     const bool mirrors = instance.placement.determinant() < 0;
     add_faces<3>(flat_.indices, mesh.indices, base, mirrors);
     add_faces<4>(flat_.quads, mesh.quads, base, mirrors);
+    return finite;
   }
 
   Mesh take() && { return std::move(flat_); }
@@ -107,22 +120,25 @@ class Flattening {
  private:
   const Mesh& mesh_of(const MeshInstance& instance) const { return assembly_.shapes[instance.shape].mesh; }
 
-  void add_vertices(const Mesh& mesh, const Affine& placement) {
+  /// Whether all of them are finite.
+  bool add_vertices(const Mesh& mesh, const Affine& placement) {
     const Vec3 offset = placement.point(mesh.origin) - flat_.origin;
     const std::array<Vec3, 3>& c = placement.columns;
     // Normals turn with the cofactors, which are the inverse transposed but for a factor.
     const Affine cofactors{.columns = {cross(c[1], c[2]), cross(c[2], c[0]), cross(c[0], c[1])}};
     const double sign = placement.determinant() < 0 ? -1 : 1;
     const bool turns = c != Affine().columns;
+    bool finite = true;
     for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
-      append(flat_.positions, placement.vector(vector_at(mesh.positions, k)) + offset);
-      if (has_doubles_) append(flat_.positions_f64, placement.point(vector_at(mesh.positions_f64, k)));
+      finite &= append(flat_.positions, placement.vector(vector_at(mesh.positions, k)) + offset);
+      if (has_doubles_) finite &= append(flat_.positions_f64, placement.point(vector_at(mesh.positions_f64, k)));
       if (!has_normals_) continue;
       const Vec3 normal = vector_at(mesh.normals, k);
-      append(flat_.normals, turns ? sign * normalized(cofactors.vector(normal)) : normal);
+      finite &= append(flat_.normals, turns ? sign * normalized(cofactors.vector(normal)) : normal);
     }
     if (has_parameters_)
       flat_.parameters.insert(flat_.parameters.end(), mesh.parameters.begin(), mesh.parameters.end());
+    return finite;
   }
 
   /// Adds faces of `Corners` corners, the other way around if `mirrors`.
@@ -167,7 +183,9 @@ Result<Mesh> flatten(const MeshAssembly& assembly) {
       return flat;
     }
     Flattening flattening(assembly);
-    for (const MeshInstance& instance : assembly.instances) flattening.add(instance);
+    for (const MeshInstance& instance : assembly.instances)
+      if (!flattening.add(instance))
+        return Status(StatusCode::non_finite, "the instances together are beyond the range of float");
     return std::move(flattening).take();
   });
 }
