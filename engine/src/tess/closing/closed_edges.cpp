@@ -16,21 +16,24 @@ namespace {
 class Closer {
  public:
   Closer(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions, std::span<CutPatch> cuts,
-         FunctionRef<ChordBound(std::uint32_t)> chord)
-      : set_(set),
+         FunctionRef<ChordBound(std::uint32_t)> chord, const std::atomic<bool>* cancel)
+      : cancel_(cancel),
+        set_(set),
         chord_(chord),
         divisions_(divisions),
         cuts_(cuts),
         segments_(set, runs, divisions, cuts),
         runs_(runs) {}
 
-  ClosedEdges run(double max_gap, double same_share, std::span<const std::uint8_t> is_joined) {
-    points_ = edge_points(runs_, segments_, same_share, is_joined);
+  Result<ClosedEdges> run(double max_gap, double same_share, std::span<const std::uint8_t> is_joined) {
+    Result<EdgePoints> points = edge_points(runs_, segments_, same_share, is_joined, cancel_);
+    if (!points) return points.status();
+    points_ = *std::move(points);
     number_vertices();
-    evaluate();
+    if (Status status = evaluate(); !status.ok()) return status;
     find_open(max_gap);
     join();
-    resolve_inserted();
+    if (Status status = resolve_inserted(); !status.ok()) return status;
     list_members();
     measure();
     return std::move(out_);
@@ -38,6 +41,10 @@ class Closer {
 
  private:
   static constexpr std::uint32_t none = CutPatch::none;
+
+  Status look_at_cancel() const {
+    return cancel_ && cancel_->load() ? Status(StatusCode::cancelled, "cancelled by the caller") : Status();
+  }
 
   CutPatch* cut_of(std::uint32_t patch) const { return find_cut(cuts_, patch); }
 
@@ -72,9 +79,12 @@ class Closer {
   }
 
   /// Finds the faces' own points of all vertices.
-  void evaluate() {
+  Status evaluate() {
     own_.resize(count_);
-    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) evaluate(patch);
+    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) {
+      if (Status status = look_at_cancel(); !status.ok()) return status;
+      evaluate(patch);
+    }
     const std::span<const InsertedVertex> inserted = segments_.inserted();
     std::optional<PatchPoints> points;
     for (std::size_t k = 0; k < inserted.size(); ++k) {
@@ -82,6 +92,7 @@ class Closer {
         points.emplace(set_.patches[inserted[k].patch], set_.origin);
       own_[bases_.back() + k] = points->at(inserted[k].local);
     }
+    return {};
   }
   void evaluate(std::uint32_t patch) {
     const std::uint32_t begin = bases_[patch], end = bases_[patch + 1];
@@ -124,7 +135,7 @@ class Closer {
   }
 
   /// Gives inserted vertices of edges that are closed their numbers in their patches, and divides triangles.
-  void resolve_inserted() {
+  Status resolve_inserted() {
     std::vector<InsertedVertex> inserted(segments_.inserted().begin(), segments_.inserted().end());
     std::vector<std::uint32_t> order;
     std::vector<std::uint8_t> is_used(inserted.size(), 0);
@@ -141,6 +152,7 @@ class Closer {
     resolved_.assign(inserted.size(), CutPatch::none);
     std::vector<InsertedVertex> of_patch;
     for (std::size_t begin = 0; begin < order.size();) {
+      if (Status status = look_at_cancel(); !status.ok()) return status;
       const std::uint32_t patch = inserted[order[begin]].patch;
       of_patch.clear();
       std::size_t end = begin;
@@ -149,6 +161,7 @@ class Closer {
       for (std::size_t k = begin; k < end; ++k) resolved_[order[k]] = first + static_cast<std::uint32_t>(k - begin);
       begin = end;
     }
+    return {};
   }
 
   /// Divides the triangles of a patch. Returns the number of the first new vertex.
@@ -241,6 +254,7 @@ class Closer {
     }
   }
 
+  const std::atomic<bool>* cancel_;
   const PatchSet::Impl& set_;
   FunctionRef<ChordBound(std::uint32_t)> chord_;
   std::span<const Division> divisions_;
@@ -263,10 +277,11 @@ class Closer {
 
 }  // namespace
 
-ClosedEdges close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                        std::span<CutPatch> cuts, double max_gap, double same_share,
-                        std::span<const std::uint8_t> is_joined, FunctionRef<ChordBound(std::uint32_t)> chord) {
-  return Closer(set, runs, divisions, cuts, chord).run(max_gap, same_share, is_joined);
+Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
+                                std::span<CutPatch> cuts, double max_gap, double same_share,
+                                std::span<const std::uint8_t> is_joined, FunctionRef<ChordBound(std::uint32_t)> chord,
+                                const std::atomic<bool>* cancel) {
+  return Closer(set, runs, divisions, cuts, chord, cancel).run(max_gap, same_share, is_joined);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -13,10 +13,11 @@ class Maker {
   Maker(const EdgeRuns& runs, EdgeSegments& segments, double same_share, std::span<const std::uint8_t> is_joined)
       : runs_(runs), all_(segments), same_share_(same_share), is_joined_(is_joined) {}
 
-  EdgePoints run() {
+  Result<EdgePoints> run(const std::atomic<bool>* cancel) {
     const std::size_t edges = runs_.edges().edges.size();
     out_.counts.resize(edges);
     for (std::uint32_t edge = 0; edge < edges; ++edge) {
+      if (cancel && cancel->load()) return Status(StatusCode::cancelled, "cancelled by the caller");
       segments_.clear();
       all_.append(edge, segments_);
       if (!segments_.empty()) add_edge(edge);
@@ -120,9 +121,9 @@ class Maker {
 
 }  // namespace
 
-EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                       std::span<const std::uint8_t> is_joined) {
-  return Maker(runs, segments, same_share, is_joined).run();
+Result<EdgePoints> edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
+                               std::span<const std::uint8_t> is_joined, const std::atomic<bool>* cancel) {
+  return Maker(runs, segments, same_share, is_joined).run(cancel);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -1,11 +1,13 @@
 #pragma once
 // The points of edges: parameters at which all faces of an edge have vertices.
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "tess/closing/edge_segments.h"
+#include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -32,8 +34,11 @@ struct EdgePoints {
 /// Lists the points of all edges. Where an edge has several coedges, each gets vertices at the parameters of all:
 /// missing ones are inserted. Parameters within `same_share` of the edge's range count as one.
 ///
-/// `is_joined`: by 4 * patch + side, whether triangles of another patch have the same border anyway.
-EdgePoints edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                       std::span<const std::uint8_t> is_joined);
+/// - `is_joined`: by 4 * patch + side, whether triangles of another patch have the same border anyway.
+/// - `cancel`: looked at for each edge, unless null.
+///
+/// Errors: cancelled.
+Result<EdgePoints> edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
+                               std::span<const std::uint8_t> is_joined, const std::atomic<bool>* cancel);
 
 }  // namespace tessera::inline abi_0_1

@@ -43,9 +43,11 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
     if (set_->trims)
       if (Status status = divide_and_cut(cut, plan, execution); !status.ok()) return status;
     if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
-    ClosedEdges& closed = plan.rare_->closed.emplace(
-        tessera::close_edges(*set_, *runs_, plan.divisions_, plan.rare_->cuts, options_.max_gap, same_share(request),
-                             joined_borders(plan), [this](std::uint32_t patch) { return chord(patch); }));
+    Result<ClosedEdges> made = tessera::close_edges(
+        *set_, *runs_, plan.divisions_, plan.rare_->cuts, options_.max_gap, same_share(request), joined_borders(plan),
+        [this](std::uint32_t patch) { return chord(patch); }, execution.cancel);
+    if (!made) return made.status();
+    const ClosedEdges& closed = plan.rare_->closed.emplace(*std::move(made));
     double excess = 0;
     for (const std::uint32_t c : closed.edited_cuts) {
       CutPatch& edited = plan.rare_->cuts[c];
