@@ -150,6 +150,12 @@ Result<TrimRegion> TrimRegion::Impl::make(std::span<const TrimLoop> loops, std::
   });
 }
 
+TrimRegion TrimRegion::Impl::for_points(const TrimRegion& region) {
+  auto made = std::make_shared<Impl>(*region.impl_);
+  made->cells = RegionCells::make(made->pieces, made->domain, made->starts_inside);
+  return TrimRegion(std::move(made));
+}
+
 TrimOptions TrimRegion::Impl::options_of(const PatchGrid& grid) {
   constexpr double file_digits = 0x1p-32;  // files state the ends of curves to about 10 digits
   return {.periodic_u = closes(grid, true), .periodic_v = closes(grid, false), .snap = file_digits};

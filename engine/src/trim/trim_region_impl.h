@@ -25,6 +25,8 @@ class TrimRegion::Impl {
                                  std::span<const double> breaks_v, const TrimOptions& options, Use use,
                                  CurveExtractions* shared = nullptr);
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use);
+  /// Returns the region, made for points.
+  static TrimRegion for_points(const TrimRegion& region);
   /// How loops over a grid are repaired.
   static TrimOptions options_of(const PatchGrid& grid);
 

@@ -37,7 +37,8 @@ struct EmbreeLeaves::State {
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    *arguments->bounds_o = padded(state.tracer.nets->boxes()[arguments->primID]);
+    const bool is_out = state.tracer.use_of(arguments->primID) == PatchUse::out;
+    *arguments->bounds_o = padded(is_out ? Box3() : state.tracer.nets->boxes()[arguments->primID]);
   }
 
   /// Searches a leaf for the valid rays of a call, then calls `then(k, ray, query)` for each. On machines without wider

@@ -150,17 +150,32 @@ class LeafSearch {
     return std::max(x.u.radius() + x.v.radius(), y.u.radius() + y.v.radius()) <= 2 * tolerance_ * lightest;
   }
 
+  /// Takes the nearest corner of a part that lies on the ray. Where loops cut the leaf, the part may be kept elsewhere
+  /// than at its corners: then that is the nearest kept point of a grid.
   void take_nearest_corner(int slot, double from) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr int finest = 16;
+    const int rate = query_.trims == nullptr ? 1 : finest;
     NetPoint nearest;
     double s = infinity;
-    for (const double u : {0.0, 1.0}) {
-      for (const double v : {0.0, 1.0}) {
-        const double here = value(space_.net(slot), {u, v}).s();
-        if (here >= query_.line.near ? here < s || s < query_.line.near : s == infinity) s = here, nearest = {u, v};
+    for (int i = 0; i <= rate; ++i) {
+      for (int j = 0; j <= rate; ++j) {
+        const NetPoint at{double(i) / rate, double(j) / rate};
+        if (rate > 1 && !is_kept(slot, at)) continue;
+        const double here = value(space_.net(slot), at).s();
+        if (here >= query_.line.near ? here < s || s < query_.line.near : s == infinity) s = here, nearest = at;
       }
     }
-    take(slot, nearest, false, from);
+    if (s < infinity) take(slot, nearest, false, from);
+  }
+
+  /// Whether the loops keep a point of a part.
+  bool is_kept(int slot, NetPoint at) const {
+    const SearchBox& box = space_.box(slot);
+    LeafRoot point;
+    point.patch = leaf_.patch;
+    point.u = leaf_.u0 + (box.u0 + at.u * box.du) * leaf_.du, point.v = leaf_.v0 + (box.v0 + at.v * box.dv) * leaf_.dv;
+    return query_.trims->side_of(point) != TrimSide::outside;
   }
 
   /// Takes the point nearest to the ray if it is a root within the tolerance. Other points of the part may come before

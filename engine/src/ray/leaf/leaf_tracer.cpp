@@ -79,6 +79,9 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
   fetch(&nets->local(leaf_index), kernel::ray_leaf_bytes(false));
   const Leaf& leaf = nets->leaves()[leaf_index];
   if (leaf.patch >= patches && query.wanted != RootsWanted::all) return;
+  const PatchUse use = use_of(leaf_index);
+  if (use == PatchUse::out) return;
+  query.trims = use == PatchUse::cut ? trims : nullptr;
   probe.far = probe_far(query);
   ++query.steps;
   if (query.line.spawn > 0) query.origin = this;
@@ -93,7 +96,8 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
 
 void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes, SearchSpace& space) const {
   if (nets->leaves()[leaf_index].patch >= patches) return;  // packets never ask for all roots
-  unsigned open = kernels->packets == nullptr ? lanes : decide(leaf_index, packet, lanes);
+  const bool together = kernels->packets != nullptr && use_of(leaf_index) == PatchUse::whole;
+  unsigned open = together ? decide(leaf_index, packet, lanes) : lanes;
   for (std::size_t lane = 0; open != 0; ++lane, open >>= 1) {
     if (open & 1u) search(leaf_index, packet.probes[lane], *packet.queries[lane], space);
   }
@@ -215,8 +219,7 @@ bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, Ray
           polish_at_border(patch, nets->frame(), *kernels, query.line, start, tolerance_of(leaf), root);
       if (what == BorderRoot::open) return false;
       if (what == BorderRoot::beyond) continue;
-    } else if (!polish(patch, nets->frame(), *kernels, query.line, start,
-                       query.wanted == RootsWanted::all || query.origin != nullptr, root)) {
+    } else if (!polish(patch, nets->frame(), *kernels, query.line, start, query.needs_gains(), root)) {
       return false;
     }
     ++count;

@@ -8,6 +8,7 @@
 #include "kernel/ray/ray_kernels.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
+#include "ray/leaf/leaf_trims.h"
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
 #include "ray/seam/lazy_adjacency.h"
@@ -39,7 +40,10 @@ struct TracedLeaves {
   std::size_t patches = 0;                 ///< patches from this index on are neighbours, whose roots count only for
                                            ///< all hits
   double tolerance = 0;                    ///< as requested, in the scene's coordinates
+  const LeafTrims* trims = nullptr;        ///< null if no patch is cut
 
+  /// What the loops of its face keep of a leaf.
+  PatchUse use_of(unsigned leaf) const { return trims == nullptr ? PatchUse::whole : trims->use(leaf); }
   /// Returns the tolerance for search_leaf: at least what rounding requires.
   double tolerance_of(const Leaf& leaf) const;
 };

@@ -11,6 +11,7 @@
 
 #include "ray/line/ray_line.h"
 #include "tessera/ray_scene.h"
+#include "tessera/trim_region.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -86,6 +87,15 @@ inline bool comes_before(const LeafRoot& a, const LeafRoot& b) {
   return a.s < b.s || (a.s == b.s && std::tie(a.patch, a.u, a.v) < std::tie(b.patch, b.u, b.v));
 }
 
+/// Tells on which side of the loops of its face a root lies: see leaf_trims.h.
+class RootSides {
+ public:
+  virtual TrimSide side_of(const LeafRoot& root) const = 0;
+
+ protected:
+  ~RootSides() = default;
+};
+
 struct RayQuery;
 
 /// The caller's filter of roots: see batch_filter.h.
@@ -119,6 +129,7 @@ struct RayQuery {
   LeafRoot best;                       ///< if found
   std::vector<LeafRoot> roots;         ///< if all are wanted
   const OriginTest* origin = nullptr;  ///< if the line leaves a surface
+  const RootSides* trims = nullptr;    ///< if loops cut the leaf that is searched
   const RootFilter* filter = nullptr;  ///< if not all roots count; never if all are wanted
   std::size_t index = 0;               ///< index of the ray in the batch, for the filter
   bool stopped = false;                ///< by the filter
@@ -127,10 +138,12 @@ struct RayQuery {
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
   bool done() const { return (found && wanted == RootsWanted::any) || overflow || stopped; }
   /// Returns whether each root must be known to its last digits, one by one.
-  bool decides_each_root() const { return origin != nullptr || filter != nullptr; }
+  bool decides_each_root() const { return origin != nullptr || filter != nullptr || trims != nullptr; }
+  /// Returns whether roots must have gains.
+  bool needs_gains() const { return wanted == RootsWanted::all || origin != nullptr || trims != nullptr; }
 
-  /// Takes a root. Returns false if its t is outside of [tnear, tfar], or if it stands for the origin that the ray
-  /// leaves: there may be others beside it.
+  /// Takes a root, unless it is cut away. Returns false if its t is outside of [tnear, tfar], or if it stands for the
+  /// origin that the ray leaves: there may be others beside it.
   bool take(const LeafRoot& root) {
     if (origin != nullptr) {  // first: rounding may put the origin itself before tnear
       const OriginRoot is = origin->decide_root(line, root);
@@ -138,6 +151,17 @@ struct RayQuery {
     }
     const double t = line.t_at(root.s);
     if (!(t >= least && t <= ray.tfar)) return false;
+    if (trims == nullptr) return add(root);
+    const TrimSide side = trims->side_of(root);
+    if (side == TrimSide::outside) return true;
+    LeafRoot kept = root;
+    kept.certified = kept.certified && side == TrimSide::inside;
+    return add(kept);
+  }
+
+ private:
+  /// Adds a root that counts.
+  bool add(const LeafRoot& root) {
     if (wanted == RootsWanted::all) {
       try {
         roots.push_back(root);
@@ -155,7 +179,6 @@ struct RayQuery {
     return true;
   }
 
- private:
   bool counts(const LeafRoot& root) {
     const HitVerdict verdict = filter->decide(*this, root);
     if (verdict != HitVerdict::accept && verdict != HitVerdict::reject) {

@@ -59,7 +59,7 @@ class ExactScene final : public PatchScene, private ExactSource {
       : PatchScene(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
 
   std::size_t memory_bytes() const override {
-    return nets_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
+    return nets_.memory_bytes() + trims_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
   }
 
   const ExactSource* exact_source() const override { return this; }
@@ -104,6 +104,7 @@ class ExactScene final : public PatchScene, private ExactSource {
 
   LeafNets nets_;  // borrowed by scene_, like the borders
   LazyAdjacency adjacency_;
+  LeafTrims trims_;
   EmbreeLeaves scene_;
   RaySceneOptions options_;
   mutable SearchPool pool_;
@@ -129,7 +130,9 @@ Result<Box3> ExactScene::frame_box() const {
 /// Measures the boxes of all current pieces. Returns the tolerance.
 double ExactScene::measure() {
   scene_box_ = {};
-  for (const Box3& leaf_box : nets_.boxes()) scene_box_.extend(leaf_box);
+  const std::span<const Box3> boxes = nets_.boxes();
+  for (std::size_t leaf = 0; leaf < boxes.size(); ++leaf)
+    if (!trims_.any() || trims_.use(leaf) != PatchUse::out) scene_box_.extend(boxes[leaf]);
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
   const double tolerance = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
   const double least = 2 * search_rounding(max_degree, max_degree, Leaf::max_halvings, SearchSpace::max_depth);
@@ -154,7 +157,8 @@ Status ExactScene::build(const Execution& execution) {
   if (Status status = nets_.build(set(), frame_, flatness(), execution); !status.ok()) return status;
   if (nets_.leaves().size() > max_leaves)
     return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
-  const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure()};
+  if (Status status = trims_.build(set(), nets_.leaves(), execution); !status.ok()) return status;
+  const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure(), trims_.any() ? &trims_ : nullptr};
   if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
   if (!follows_) nets_.drop_boxes();
   return {};

@@ -1,0 +1,41 @@
+#pragma once
+// The trims of a ray scene's leaves: which leaves the loops of their faces leave out or cut, and whether roots in cut
+// ones are kept.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "block/patch_trims.h"
+#include "ray/leaf/leaf_nets.h"
+#include "ray/line/ray_query.h"
+#include "tessera/execution.h"
+#include "tessera/status.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// Const calls from any number of threads.
+class LeafTrims final : public RootSides {
+ public:
+  /// Finds the uses of all leaves. `set`: as the leaves were made from; its patches may be edited, its loops not.
+  /// Errors: cancelled, out_of_memory.
+  Status build(const SetView& set, std::span<const Leaf> leaves, const Execution& execution);
+  /// Whether any patch is cut; otherwise no other call is allowed.
+  bool any() const { return trims_ != nullptr; }
+  PatchUse use(std::size_t leaf) const { return static_cast<PatchUse>(uses_[leaf]); }
+  /// The side of a root of a cut leaf. `border`: the loops pass between the places where the root may be.
+  TrimSide side_of(const LeafRoot& root) const override;
+  std::size_t memory_bytes() const { return uses_.capacity() + regions_of_.capacity() * sizeof(std::uint32_t); }
+
+ private:
+  std::uint8_t use_of(const SetView& set, const Leaf& leaf) const;
+
+  std::shared_ptr<const PatchTrims> trims_;
+  const PatchSet::Impl* set_ = nullptr;
+  std::vector<TrimRegion> regions_;        ///< as those of `trims_`, and they locate points
+  std::vector<std::uint32_t> regions_of_;  ///< `[patch]`: into `regions_`, if it is cut
+  std::vector<std::uint8_t> uses_;         ///< `[leaf]`
+};
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,157 @@
+// Exact rays see the parts of faces that loops keep, and nothing else.
+
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "block/unjoined_faces.h"
+#include "ray/batch_support.h"
+#include "tess_trim/closed_shape.h"
+#include "tess_trim/trimmed_face.h"
+#include "tessera/edge_matching.h"
+#include "tessera/trim_region.h"
+
+namespace tessera::test {
+namespace {
+
+/// The hits of all kinds of queries of a scene, beside those that a referee keeps of the whole surface's.
+void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t seed) {
+  const PatchSet whole_set = value_of(make_patch_set(face.model, {.trims = false}));
+  const RayScene whole = value_of(RayScene::make(whole_set)), scene = value_of(RayScene::make(face.set, options));
+  const TrimRegion region = value_of(TrimRegion::make(*face.model.surfaces[0].trims, face.grid));
+  const std::vector<Ray> rays = rays_through(whole_set.box(), 4000, seed);
+  HitLists all_of_whole, lists;
+  ASSERT_TRUE(whole.all(rays, all_of_whole).ok());
+  ASSERT_TRUE(scene.all(rays, lists).ok());
+  const std::vector<Hit> hits = closest(scene, rays);
+  std::vector<std::uint8_t> occluded(rays.size());
+  ASSERT_TRUE(scene.occluded(rays, occluded).ok());
+  std::size_t kept = 0, cut_away = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    std::vector<Hit> expected;
+    for (std::size_t n = all_of_whole.first[k]; n < all_of_whole.first[k + 1]; ++n) {
+      const Hit& hit = all_of_whole.hits[n];
+      const bool is_kept = region.locate(hit.u, hit.v) != TrimSide::outside;
+      if (is_kept) expected.push_back(hit);
+      ++(is_kept ? kept : cut_away);
+    }
+    ASSERT_EQ(lists.first[k + 1] - lists.first[k], expected.size()) << k;
+    for (std::size_t n = 0; n < expected.size(); ++n) {
+      const Hit& found = lists.hits[lists.first[k] + n];
+      EXPECT_NEAR(found.t, expected[n].t, 1e-9) << k;
+      EXPECT_NEAR(found.u, expected[n].u, 1e-6) << k;
+    }
+    EXPECT_EQ(occluded[k], expected.empty() ? 0 : 1) << k;
+    EXPECT_EQ(hits[k].kind, expected.empty() ? HitKind::miss : HitKind::hit) << k;
+    const Hit alone = scene.closest(rays[k]);
+    EXPECT_EQ(alone.kind, hits[k].kind) << k;
+    EXPECT_EQ(scene.occluded(rays[k]), occluded[k] != 0) << k;
+    if (expected.empty()) continue;
+    EXPECT_NEAR(hits[k].t, expected[0].t, 1e-9) << k;
+    EXPECT_EQ(alone.t, hits[k].t) << k;
+  }
+  EXPECT_GT(kept, rays.size() / 20);
+  EXPECT_GT(cut_away, rays.size() / 20);
+}
+
+std::vector<TrimLoop> outline_with_holes() {
+  return {polygon({{0.3, 0.2, 0}, {3.7, 0.4, 0}, {3.5, 2.8, 0}, {0.5, 2.6, 0}}), circle_loop(1.5, 1.3, 0.7, true, 0.4),
+          circle_loop(2.8, 1.8, 0.45, true)};
+}
+
+TEST(TrimmedScene, HoldsWhatLoopsKeep) {
+  for (const int pieces : {1, 4}) {
+    expect_kept(Face(plane(), outline_with_holes()), {.pieces = pieces}, 1);
+    expect_kept(Face(wavy(), outline_with_holes()), {.pieces = pieces}, 2);
+    expect_kept(Face(cylinder(), outline_with_holes()), {.pieces = pieces}, 3);
+  }
+}
+
+TEST(TrimmedScene, AsksFiltersAboutKeptRootsAlone) {
+  const Face face(wavy(), outline_with_holes());
+  const TrimRegion region = value_of(TrimRegion::make(*face.model.surfaces[0].trims, face.grid));
+  const RayScene scene = value_of(RayScene::make(face.set));
+  const Arrays<double> rays(rays_through(face.set.box(), 500, 7));
+  std::atomic<std::size_t> asked = 0;
+  const BatchOptions reject{.filter = [&](const HitCandidate& at) {
+    ++asked;
+    EXPECT_NE(region.locate(at.u, at.v), TrimSide::outside);
+    return HitVerdict::reject;
+  }};
+  std::vector<std::uint8_t> dark(500, 7);
+  ASSERT_TRUE(occluded(scene, rays.views(), View1<std::uint8_t>::soa({dark}), reject).ok());
+  EXPECT_EQ(dark, std::vector<std::uint8_t>(500, 0));
+  EXPECT_GT(asked, 100u);
+}
+
+// A ray through the hole of a closed plate meets nothing; one beside it meets two faces.
+TEST(TrimmedScene, RaysPassThroughTheHolesOfAShape) {
+  const Shape shape = value_of(joined_shape(drilled_plate(), 1e-6));
+  const PatchSet set = value_of(make_patch_set(shape));
+  const RayScene scene = value_of(RayScene::make(set));
+  Random random(5);
+  std::size_t through = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 at = uniform_vector(random, 0, 1);
+    const double x = 4 * at.x, y = 3 * at.y, off = std::hypot(x - 1.7, y - 1.4) - 0.6;
+    if (std::abs(off) < 1e-9) continue;
+    const Hit hit = scene.closest(ray({x, y, 5}, {0, 0, -1}));
+    through += off < 0;
+    ASSERT_EQ(hit.kind, off < 0 ? HitKind::miss : HitKind::hit) << x << ' ' << y;
+    if (off > 0) {
+      EXPECT_NEAR(hit.t, 4, 1e-12);
+    }
+    HitLists lists;
+    ASSERT_TRUE(scene.all(std::vector<Ray>{ray({x, y, 5}, {0, 0, -1})}, lists).ok());
+    ASSERT_EQ(lists.hits.size(), off < 0 ? 0u : 2u);
+  }
+  EXPECT_GT(through, 1000u);
+}
+
+TEST(TrimmedScene, HitsAtALoopAreUncertifiedAndBesideItAreNot) {
+  const Face face(plane(), {polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
+  const RayScene scene = value_of(RayScene::make(face.set));
+  // The plane's parameters are x and y.
+  const auto at = [&](double x, double y) { return scene.closest(ray({x, y, 4}, {0, 0, -1})); };
+  EXPECT_EQ(at(1 - 1e-9, 1.5).kind, HitKind::miss);
+  EXPECT_EQ(at(1 + 1e-9, 1.5).kind, HitKind::hit);
+  EXPECT_FALSE(at(1 + 1e-9, 1.5).flags.uncertified);
+  EXPECT_EQ(at(1, 1.5).kind, HitKind::hit);
+  EXPECT_TRUE(at(1, 1.5).flags.uncertified);
+  EXPECT_TRUE(at(3, 2).flags.uncertified);
+}
+
+// A ray within a plane enters what is kept of it at the loop, not at the border of the whole plane.
+TEST(TrimmedScene, RaysAlongAPlaneMeetWhatIsKept) {
+  const Face face(plane(), {polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
+  const RayScene scene = value_of(RayScene::make(face.set));
+  const Hit hit = scene.closest(ray({-1, 1.5, 1}, {1, 0, 0}));
+  EXPECT_EQ(hit.kind, HitKind::hit);
+  EXPECT_TRUE(hit.flags.uncertified);
+  EXPECT_TRUE(hit.flags.tangential);
+  EXPECT_GE(hit.t, 2 - 1e-9);
+  EXPECT_LE(hit.t, 2.25);
+  EXPECT_EQ(scene.closest(ray({-1, 0.5, 1}, {1, 0, 0})).kind, HitKind::miss);
+}
+
+TEST(TrimmedScene, InstancesAndRefitsKeepTheLoops) {
+  Face face(plane(), {polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
+  RayScene scene = value_of(RayScene::make(face.set, RaySceneOptions{.editable = true}));
+  {
+    const RayInstance instances[] = {{&scene, Affine::translated({10, 0, 0})}};
+    const RayScene placed = value_of(RayScene::make(instances));
+    EXPECT_EQ(placed.closest(ray({12, 1.5, 4}, {0, 0, -1})).kind, HitKind::hit);
+    EXPECT_EQ(placed.closest(ray({10.5, 1.5, 4}, {0, 0, -1})).kind, HitKind::miss);
+  }
+  std::vector<Vec3> points(face.set.patch(0).points().begin(), face.set.patch(0).points().end());
+  for (Vec3& p : points) p.z += 1;
+  ASSERT_TRUE(face.set.set_control_points(0, points).ok());
+  ASSERT_TRUE(scene.refit().ok());
+  const Hit hit = scene.closest(ray({2, 1.5, 4}, {0, 0, -1}));
+  EXPECT_EQ(hit.kind, HitKind::hit);
+  EXPECT_NEAR(hit.t, 2, 1e-12);
+  EXPECT_EQ(scene.closest(ray({0.5, 1.5, 4}, {0, 0, -1})).kind, HitKind::miss);
+}
+
+}  // namespace
+}  // namespace tessera::test
