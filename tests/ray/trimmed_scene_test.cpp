@@ -84,28 +84,70 @@ TEST(TrimmedScene, AsksFiltersAboutKeptRootsAlone) {
   EXPECT_GT(asked, 100u);
 }
 
+/// A closed plate with a hole, and far from it a scrap, which keeps other parameters than those of the plate's walls.
+Shape plate_and_scrap() {
+  std::vector<ModelSurface> faces = drilled_plate();
+  const TrimLoop scrap = polygon({{3.6, 2.6, 0}, {3.9, 2.6, 0}, {3.9, 2.9, 0}, {3.6, 2.9, 0}});
+  faces.insert(faces.begin(), rectangle_face({100, 0, 0}, {4, 0, 0}, {0, 3, 0}, {scrap}));
+  return value_of(joined_shape(faces, 1e-6));
+}
+
 // A ray through the hole of a closed plate meets nothing; one beside it meets two faces.
 TEST(TrimmedScene, RaysPassThroughTheHolesOfAShape) {
-  const Shape shape = value_of(joined_shape(drilled_plate(), 1e-6));
+  const Shape shape = plate_and_scrap();
   const PatchSet set = value_of(make_patch_set(shape));
   const RayScene scene = value_of(RayScene::make(set));
-  Random random(5);
-  std::size_t through = 0;
-  for (int k = 0; k < 20000; ++k) {
-    const Vec3 at = uniform_vector(random, 0, 1);
-    const double x = 4 * at.x, y = 3 * at.y, off = std::hypot(x - 1.7, y - 1.4) - 0.6;
-    if (std::abs(off) < 1e-9) continue;
-    const Hit hit = scene.closest(ray({x, y, 5}, {0, 0, -1}));
-    through += off < 0;
-    ASSERT_EQ(hit.kind, off < 0 ? HitKind::miss : HitKind::hit) << x << ' ' << y;
-    if (off > 0) {
-      EXPECT_NEAR(hit.t, 4, 1e-12);
+  std::vector<Ray> rays;
+  std::vector<double> off;  // from the wall of the hole
+  for (int i = 0; i < 160; ++i)
+    for (int j = 0; j < 120; ++j) {  // neighbours in packets
+      const double x = 4 * (i + 0.37) / 160, y = 3 * (j + 0.41) / 120;
+      rays.push_back(ray({x, y, 5}, {0, 0, -1}));
+      off.push_back(std::hypot(x - 1.7, y - 1.4) - 0.6);
     }
-    HitLists lists;
-    ASSERT_TRUE(scene.all(std::vector<Ray>{ray({x, y, 5}, {0, 0, -1})}, lists).ok());
-    ASSERT_EQ(lists.hits.size(), off < 0 ? 0u : 2u);
+  const std::vector<Hit> hits = closest(scene, rays);
+  std::vector<std::uint8_t> dark(rays.size());
+  HitLists lists;
+  ASSERT_TRUE(scene.occluded(rays, dark).ok());
+  ASSERT_TRUE(scene.all(rays, lists).ok());
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const bool is_kept = off[k] > 0;
+    ASSERT_EQ(hits[k].kind, is_kept ? HitKind::hit : HitKind::miss) << off[k];
+    ASSERT_EQ(scene.closest(rays[k]).kind, hits[k].kind) << off[k];
+    ASSERT_EQ(dark[k] != 0, is_kept) << off[k];
+    ASSERT_EQ(lists.first[k + 1] - lists.first[k], is_kept ? 2u : 0u) << off[k];
+    if (is_kept) {
+      EXPECT_NEAR(hits[k].t, 4, 1e-12);
+    }
   }
-  EXPECT_GT(through, 1000u);
+}
+
+// Rays at all angles meet a closed body an even number of times, in packets and alone.
+TEST(TrimmedScene, RaysMeetAClosedBodyAnEvenNumberOfTimes) {
+  const Shape shape = plate_and_scrap();
+  const PatchSet set = value_of(make_patch_set(shape));
+  const RayScene scene = value_of(RayScene::make(set));
+  Random random(9);
+  std::size_t met = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Vec3 centre{2, 1.5, 0.5}, eye = centre + 6 * normalized(random_direction(random));
+    const Vec3 at = centre + uniform_vector(random, -1, 1);
+    std::vector<Ray> rays;
+    for (int k = 0; k < 16; ++k) rays.push_back(ray(eye, at + 0.05 * uniform_vector(random, -1, 1) - eye));
+    HitLists lists;
+    ASSERT_TRUE(scene.all(rays, lists).ok());
+    const std::vector<Hit> hits = closest(scene, rays);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      const std::size_t count = lists.first[k + 1] - lists.first[k];
+      EXPECT_EQ(count % 2, 0u);
+      ASSERT_EQ(hits[k].kind, count > 0 ? HitKind::hit : HitKind::miss);
+      if (count > 0) {
+        EXPECT_NEAR(hits[k].t, lists.hits[lists.first[k]].t, 1e-12);
+        ++met;
+      }
+    }
+  }
+  EXPECT_GT(met, 2000u);
 }
 
 TEST(TrimmedScene, HitsAtALoopAreUncertifiedAndBesideItAreNot) {

@@ -117,7 +117,7 @@ Result<std::optional<render::MeshDistance>> borders_of(const Mesh& mesh, const P
   return std::optional(*std::move(made));
 }
 
-/// Makes a scene of the mesh of surfaces: exact rays see trimmed patches whole, and do not know where surfaces end.
+/// Makes a scene of the mesh of surfaces, which knows where they end.
 Result<RaycastScene> make_drawn_scene(Loaded loaded, const PatchSet& surfaces, const RaycastOptions& options,
                                       Timings& timings) {
   constexpr double share_of_size = 2e-4;  // below a pixel in pictures of up to 2000 pixels
@@ -157,12 +157,12 @@ Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& op
   if (!loaded) return loaded.status();
   Result<PatchSet> set = pack(*loaded, options.models, timings);
   if (!set) return set.status();
-  const bool is_trimmed = set->cut_count() > 0;
-  if ((is_trimmed || options.edges) && shows_shape(job, options))
+  const bool needs_mesh = set->cut_count() > 0 && options.mode == RayMode::grid;  // whose facets are whole patches
+  if ((needs_mesh || options.edges) && shows_shape(job, options))
     return make_drawn_scene(*std::move(loaded), *set, options, timings);
   if (options.edges)
     return Status(StatusCode::invalid_argument, "--edges needs --shade lambert, normals or clay, and a .png picture");
-  if (is_trimmed) {
+  if (needs_mesh) {
     warn(loaded->files[0] + ": " + trims_text(loaded->trimmed()) + ": taken whole");
     ModelOptions whole = options.models;
     whole.untrimmed = true;
@@ -173,7 +173,7 @@ Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& op
   if (!rays) return rays.status();
   RaycastScene scene{*std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
   scene.colours = colours_of(scene.loaded.model, scene.set);
-  scene.ignores_trims = is_trimmed;
+  scene.ignores_trims = needs_mesh;
   if (options.settings.shade == render::Shade::error) {
     const auto phase = timings.phase("measure");
     Result<MeshError> error = measure_error(options.error, scene.set);

@@ -117,6 +117,7 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if ((lanes >> lane & 1u) == 0 || packet.rays.state[lane] == kernel::RayPacket::nothing) continue;
     RayQuery& query = *packet.queries[lane];
+    query.trims = nullptr;
     const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
     const bool any = query.wanted == RootsWanted::any && query.filter == nullptr;
     if (has_root && any && lies_between(root_of(packet.rays, lane), query.line)) {
