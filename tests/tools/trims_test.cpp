@@ -47,7 +47,10 @@ TEST_F(Trims, DecideWhatIsMeshed) {
 TEST_F(Trims, AreSaidWhereRaysTakeSurfacesWhole) {
   for (const Names& command : {Names{"raycast", "trimmed.obj", "-o", "a.png", "--size", "16x16", "--shade", "uv"},
                                Names{"raycast", "trimmed.obj", "-o", "a.exr", "--size", "16x16"}}) {
-    const ToolRun result = run(command);
+    EXPECT_EQ(output_of(command).find("trimmed:"), std::string::npos);  // exact rays see what loops keep
+    Names by_facets = command;
+    by_facets.insert(by_facets.end(), {"--mode", "grid"});
+    const ToolRun result = run(by_facets);
     EXPECT_EQ(result.status, 0) << result.errors;
     EXPECT_EQ(result.errors, "tessera: warning: trimmed.obj: 1 surface is trimmed: taken whole\n");
   }
@@ -65,7 +68,7 @@ TEST_F(Trims, AreInTheFacts) {
 }
 
 TEST_F(Trims, ThePictureSaysSo) {
-  const Names options{"--size", "400x300", "--json"};
+  const Names options{"--size", "400x300", "--json", "--mode", "grid"};
   Names plain{"raycast", "plain.obj", "-o", "plain.png"}, trimmed{"raycast", "trimmed.obj", "-o", "trimmed.png"};
   plain.insert(plain.end(), options.begin(), options.end());
   trimmed.insert(trimmed.end(), options.begin(), options.end());
@@ -90,15 +93,33 @@ TEST_F(Trims, ThePictureSaysSo) {
 
 TEST_F(Trims, SmallPicturesSayItShorter) {
   for (const char* const size : {"150x40", "50x40", "20x12", "16x9", "9x5", "1x1"}) {
-    const ToolRun result = run({"raycast", "trimmed.obj", "-o", "a.png", "--size", size});
+    const ToolRun result = run({"raycast", "trimmed.obj", "-o", "a.png", "--size", size, "--mode", "grid"});
     EXPECT_EQ(result.status, 0) << result.errors;
   }
 }
 
 TEST_F(Trims, TheTerminalSaysSo) {
-  EXPECT_NE(run({"raycast", "trimmed.obj", "--terminal", "--size", "16x16"})
+  EXPECT_NE(run({"raycast", "trimmed.obj", "--terminal", "--size", "16x16", "--mode", "grid"})
                 .output.find("\ntrimmed.obj: 1 surface is trimmed: drawn by a mesh within "),
             std::string::npos);
+}
+
+TEST_F(Trims, RaysHitWhatLoopsKeep) {
+  std::string rays = "ox,oy,oz,dx,dy,dz\n";
+  constexpr int side = 40;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      rays += std::to_string((i + 0.5) / side) + "," + std::to_string((j + 0.5) / side) + ",5,0,0,-1\n";
+  folder_.file("rays.csv", rays);
+  const auto hits = [&](const std::string& file) {
+    output_of({"raycast", file, "--rays", "rays.csv", "--hits", "hits.csv"});
+    const std::string table = content_of(folder_ / "hits.csv");
+    std::size_t count = 0;
+    for (std::size_t at = table.find(",1,"); at != std::string::npos; at = table.find(",1,", at + 1)) ++count;
+    return count;
+  };
+  EXPECT_EQ(hits("plain.obj"), std::size_t{side * side});
+  EXPECT_NEAR(static_cast<double>(hits("trimmed.obj")) / (side * side), 0.18, 0.03);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ enum class RayMode : std::uint8_t {
   /// surface. It shows what the tessellation shows, with true t, u, v and normals.
   ///
   /// The facets decide what is met and in which order. A silhouette may be missed or flagged. If two surfaces lie
-  /// nearer to each other than to their facets, the farther one may be returned.
+  /// nearer to each other than to their facets, the farther one may be returned. Trimmed patches are met as wholes.
   grid,
   /// The surface itself, of the control points in double. Every intersection is found, also at shared borders and
   /// poles. Silhouettes are found down to the tolerance. A returned hit lies within the tolerance of the ray; hits that
@@ -114,6 +114,10 @@ enum class RayMode : std::uint8_t {
   ///
   /// Pieces of patches lie in an Embree BVH. Interval Newton steps in float search each piece; where these prove
   /// nothing, branch and bound in double does. Every rounding is bounded, also for far origins.
+  ///
+  /// Of a trimmed face, rays meet what its loops keep: TrimRegion::locate() answers for the root's parameters. Where a
+  /// loop may pass on either side of the root, the hit is uncertified. Rays may slip between faces whose loops do not
+  /// meet in space.
   exact,
 };
 

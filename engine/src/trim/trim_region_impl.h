@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/internal_export.h"
 #include "tessera/trim_region.h"
 #include "trim/curve_extractions.h"
 #include "trim/cut_lines.h"
@@ -26,7 +27,7 @@ class TrimRegion::Impl {
                                  CurveExtractions* shared = nullptr);
   static Result<TrimRegion> make(std::span<const TrimLoop> loops, const PatchGrid& grid, Use use);
   /// Returns the region, made for points.
-  static TrimRegion for_points(const TrimRegion& region);
+  TESSERA_INTERNAL_EXPORT static TrimRegion for_points(const TrimRegion& region);
   /// How loops over a grid are repaired.
   static TrimOptions options_of(const PatchGrid& grid);
 

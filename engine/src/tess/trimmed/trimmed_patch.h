@@ -42,9 +42,9 @@ struct TrimmedPatch {
   bool in_cells;           ///< whether triangles must be no wider than cells
   double bend;             ///< see ChordLimits
   VertexRounding rounding;
-  std::array<bool, 4> is_shared{};  ///< by Side: whether another patch has the same border, as across a seam
+  std::array<bool, 4> is_shared{};     ///< by Side: whether another patch has the same border, as across a seam
   const EdgeDemands* edges = nullptr;  ///< set if loops name edges of a shape
-  double chord_share = 1;  ///< the largest length of a chord, in cells
+  double chord_share = 1;              ///< the largest length of a chord, in cells
 };
 
 /// The limits of chords in a patch.
