@@ -27,7 +27,7 @@ struct Camera {
 };
 
 enum class Shade : std::uint8_t {
-  lambert,  ///< glazed porcelain, or Settings::colour, on a floor under a sky: sun with soft shadow, ambient light, one reflection
+  lambert,    ///< glazed porcelain, or Settings::colour, on a floor: sun, soft shadow, light of the sky, one reflection
   normals,    ///< the unit normal, (n + 1) / 2 as red, green, blue
   uv,         ///< patch parameters: u red, v green, a checkerboard of eighths
   patch,      ///< a colour per patch

@@ -16,9 +16,9 @@
 namespace tessera::inline abi_0_1 {
 
 /// Checks all ids of a model, of vertices, edges, faces, solids, shapes, and the surfaces of instances; positions,
-/// ranges and tolerances must be finite. Each loop must have one coedge per curve, or none. A coedge's parameter must be
-/// monotone, in the coedge's direction, stated for the edge's range, and within the curve's domain there. Calls below
-/// may be made after this check succeeds.
+/// ranges and tolerances must be finite. Each loop must have one coedge per curve, or none. A coedge's parameter must
+/// be monotone, in the coedge's direction, stated for the edge's range, and within the curve's domain there. Calls
+/// below may be made after this check succeeds.
 ///
 /// Errors: invalid_argument, as "shape 2 (nut): edge 7 ends at vertex 12, there are 12 vertices" (index = the shape or
 /// instance).

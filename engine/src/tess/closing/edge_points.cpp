@@ -46,9 +46,7 @@ class Maker {
     }
     sort_stops();
     find_places(same, least_same_share * (edge.range.to - edge.range.from));
-    if (segments_.front().run->use != segments_.back().run->use) {
-      insert_missing();
-    }
+    if (segments_.front().run->use != segments_.back().run->use) insert_missing();
     for (const EdgeSegment& segment : segments_)
       if (is_alone(segment)) ++(segment.begins() ? out_.counts[id].own : out_.counts[id].more);
     put(id, edge, same);

@@ -63,6 +63,34 @@ bool goes_on(const TrimPiece& before, const TrimPiece& next, Along along, const 
          (along_of(at, along_u) < along_of(next.end(), along_u));
 }
 
+/// A whole border of a patch along an edge.
+struct WholeBorder {
+  std::array<double, 5> quarters;  ///< the edge's parameters at quarters of the border, growing
+  std::uint32_t border;            ///< 4 * patch + side
+
+  bool is_in_step(const WholeBorder& other, double same) const {
+    const auto is_near = [&](double a, double b) { return std::abs(a - b) <= same; };
+    return std::ranges::equal(quarters, other.quarters, is_near);
+  }
+};
+
+/// Returns the border along which a run goes; nothing if it goes along a part of one, or through a patch.
+std::optional<WholeBorder> whole_border(const EdgeRuns& runs, const EdgeRun& run, const PatchSet::Impl& set) {
+  if (!run.is_side) return {};
+  const std::span<const TrimPiece> pieces = runs.pieces(run);
+  const bool along_u = runs_along_u(run.side);
+  const Domain& domain = set.sources[run.patch].domain;
+  const double begin = along_u ? domain.u0 : domain.v0, end = along_u ? domain.u1 : domain.v1;
+  if (ends_of(pieces, along_u) != std::pair(begin, end)) return {};
+  WholeBorder border{{}, 4 * run.patch + static_cast<std::uint32_t>(run.side)};
+  for (int k = 0; k <= 4; ++k) {
+    const double t = parameter_at(pieces, along_u, line_at(begin, end, Segments(4), k));
+    border.quarters[static_cast<std::size_t>(k)] = runs.to_edge(run.face, pieces.front(), t);
+  }
+  if (border.quarters.front() > border.quarters.back()) std::ranges::reverse(border.quarters);
+  return border;
+}
+
 }  // namespace
 
 std::size_t cell_of(std::span<const double> lines, double value) {
@@ -192,39 +220,18 @@ std::vector<std::uint8_t> EdgeRuns::borders_that_meet(std::size_t patches) const
 }
 
 std::vector<std::array<std::uint32_t, 2>> EdgeRuns::borders_in_step(const PatchSet::Impl& set) const {
-  struct Border {
-    std::array<double, 5> at;  ///< the edge's parameters at quarters, growing
-    std::uint32_t border;
-  };
   std::vector<std::array<std::uint32_t, 2>> pairs;
-  std::vector<Border> borders;
+  std::vector<WholeBorder> borders;
   for (std::uint32_t edge = 0; edge + 1 < first_.size(); ++edge) {
     if (!meet(edge)) continue;
     borders.clear();
-    for (const EdgeRun& run : of(edge)) {
-      if (!run.is_side) continue;
-      const std::span<const TrimPiece> pieces = this->pieces(run);
-      const bool along_u = runs_along_u(run.side);
-      const Domain& d = set.sources[run.patch].domain;
-      const double begin = along_u ? d.u0 : d.v0, end = along_u ? d.u1 : d.v1;
-      const auto ends =
-          std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
-      if (ends.first != begin || ends.second != end) continue;
-      Border border{{}, 4 * run.patch + static_cast<std::uint32_t>(run.side)};
-      for (int k = 0; k <= 4; ++k)
-        border.at[static_cast<std::size_t>(k)] =
-            to_edge(run.face, pieces.front(), parameter_at(pieces, along_u, line_at(begin, end, Segments(4), k)));
-      if (border.at.front() > border.at.back()) std::ranges::reverse(border.at);
-      borders.push_back(border);
-    }
-    std::ranges::sort(borders, {}, [](const Border& of) { return std::pair(of.at[0], of.border); });
+    for (const EdgeRun& run : of(edge))
+      if (const auto border = whole_border(*this, run, set)) borders.push_back(*border);
+    std::ranges::sort(borders, {}, [](const WholeBorder& of) { return std::pair(of.quarters[0], of.border); });
     const Interval& range = edges_->edges[edge].range;
     const double same = largest_same_share * (range.to - range.from);
-    for (std::size_t k = 1; k < borders.size(); ++k) {
-      double most = 0;
-      for (std::size_t q = 0; q < 5; ++q) most = std::max(most, std::abs(borders[k].at[q] - borders[k - 1].at[q]));
-      if (most <= same) pairs.push_back({borders[k - 1].border, borders[k].border});
-    }
+    for (std::size_t k = 1; k < borders.size(); ++k)
+      if (borders[k - 1].is_in_step(borders[k], same)) pairs.push_back({borders[k - 1].border, borders[k].border});
   }
   return pairs;
 }

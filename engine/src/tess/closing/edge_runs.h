@@ -50,8 +50,8 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   bool meet(std::size_t edge) const { return !of(edge).empty() && of(edge).front().use != of(edge).back().use; }
   /// `[4 * patch + side]`: 1 for borders along such edges.
   std::vector<std::uint8_t> borders_that_meet(std::size_t patches) const;
-  /// Pairs of borders, 4 * patch + side, along one edge whose points at equal shares lie at equal parameters of the edge.
-  /// So they meet without further vertices if they have as many segments.
+  /// Pairs of borders, 4 * patch + side, along one edge whose points at equal shares lie at equal parameters of the
+  /// edge. So they meet without further vertices if they have as many segments.
   std::vector<std::array<std::uint32_t, 2>> borders_in_step(const PatchSet::Impl& set) const;
   /// The number of a run, below count().
   std::size_t index(const EdgeRun& run) const { return static_cast<std::size_t>(&run - runs_.data()); }
@@ -90,6 +90,10 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
 
 /// The coordinate of a point along u, or along v.
 inline double along_of(const ParameterPoint& at, bool along_u) { return along_u ? at.u : at.v; }
+/// Returns the places along u, or v, at which pieces that follow each other begin and end, the lesser one first.
+inline std::pair<double, double> ends_of(std::span<const TrimPiece> pieces, bool along_u) {
+  return std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
+}
 /// Returns the cell of growing lines in which a value lies.
 std::size_t cell_of(std::span<const double> lines, double value);
 /// Returns the parameter of the caller's curve where pieces that follow each other have a value of u, or of v.

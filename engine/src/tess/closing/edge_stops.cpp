@@ -16,57 +16,56 @@ void sort_distinct(std::vector<double>& list, double same) {
   list.resize(count);
 }
 
-/// The places along a side at which pieces end, the lesser one first.
-std::pair<double, double> ends_of(std::span<const TrimPiece> pieces, bool along_u) {
-  return std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
-}
-
 }  // namespace
 
 void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
                      FunctionRef<std::optional<Segments>(std::uint32_t patch, Side side)> segments,
                      FunctionRef<ChordLimits(std::uint32_t patch)> limits) {
-  const std::span<const EdgeRun> of = runs_->of(edge);
-  std::vector<double>& list = stops_[edge];
+  const std::span<const EdgeRun> runs = runs_->of(edge);
   const auto whole = [&](const EdgeRun& run) { return run.is_side ? segments(run.patch, run.side) : std::nullopt; };
-  if (!runs_->meet(edge) || std::ranges::all_of(of, [&](const EdgeRun& run) { return whole(run).has_value(); })) return;
+  const auto is_whole = [&](const EdgeRun& run) { return whole(run).has_value(); };
+  if (!runs_->meet(edge) || std::ranges::all_of(runs, is_whole)) return;
   const Interval& range = runs_->edges().edges[edge].range;
   const double same = same_share_ * (range.to - range.from);
-  for (const EdgeRun& run : of) {
+  std::vector<double>& stops = stops_[edge];
+  for (const EdgeRun& run : runs) {
     const std::span<const TrimPiece> pieces = runs_->pieces(run);
-    const auto add = [&](double t) { list.push_back(runs_->to_edge(run.face, pieces.front(), t)); };
-    add(pieces.front().range.from);
-    add(pieces.back().range.to);
-    const std::optional<Segments> along = whole(run);
-    if (!along) continue;
-    const bool along_u = runs_along_u(run.side);
-    const Domain& domain = set.sources[run.patch].domain;
-    const auto [low, high] = ends_of(pieces, along_u);
-    for (int k = 0; k <= along->rate(); ++k) {
-      const double at = line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, *along, k);
-      if (at > low && at < high) add(parameter_at(pieces, along_u, at));
-    }
+    stops.push_back(runs_->to_edge(run.face, pieces.front(), pieces.front().range.from));
+    stops.push_back(runs_->to_edge(run.face, pieces.front(), pieces.back().range.to));
+    if (const auto along = whole(run)) add_vertices(run, set.sources[run.patch].domain, *along, stops);
   }
-  sort_distinct(list, same);
+  sort_distinct(stops, same);
   std::vector<double> found;
   // Coedges in the edge's direction come first, so the stops do not depend on the order of faces.
   for (const bool reversed : {false, true}) {
     found.clear();
-    for (const EdgeRun& run : of) {
-      const TrimPiece& piece = runs_->pieces(run).front();
-      if (whole(run) || runs_->coedge(run.face, piece)->reversed != reversed) continue;
-      if (run.is_side) {
-        add_segments(run, limits(run.patch), found);
-        continue;
-      }
-      lay(run, limits(run.patch));
-      for (const double t : chords_[runs_->index(run)].parameters) found.push_back(runs_->to_edge(run.face, piece, t));
-    }
-    list.insert(list.end(), found.begin(), found.end());
-    sort_distinct(list, same);
+    for (const EdgeRun& run : runs)
+      if (!is_whole(run) && runs_->coedge(run.face, runs_->pieces(run).front())->reversed == reversed)
+        divide(run, limits(run.patch), found);
+    stops.insert(stops.end(), found.begin(), found.end());
+    sort_distinct(stops, same);
   }
-  for (const EdgeRun& run : of)
+  for (const EdgeRun& run : runs)
     if (!run.is_side && !is_laid(run, same)) lay(run, limits(run.patch));
+}
+
+void EdgeStops::add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments,
+                             std::vector<double>& found) const {
+  const std::span<const TrimPiece> pieces = runs_->pieces(run);
+  const bool along_u = runs_along_u(run.side);
+  const auto [low, high] = ends_of(pieces, along_u);
+  for (int k = 0; k <= segments.rate(); ++k) {
+    const double at = line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k);
+    if (at > low && at < high)
+      found.push_back(runs_->to_edge(run.face, pieces.front(), parameter_at(pieces, along_u, at)));
+  }
+}
+
+void EdgeStops::divide(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found) {
+  if (run.is_side) return add_segments(run, limits, found);
+  lay(run, limits);
+  const TrimPiece& piece = runs_->pieces(run).front();
+  for (const double t : chords_[runs_->index(run)].parameters) found.push_back(runs_->to_edge(run.face, piece, t));
 }
 
 void EdgeStops::lay(const EdgeRun& run, const ChordLimits& limits) {

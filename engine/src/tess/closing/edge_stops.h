@@ -37,6 +37,11 @@ class [[gnu::visibility("hidden")]] EdgeStops {
   ChordStops list(std::uint32_t face, std::span<const TrimPiece> pieces, std::vector<double> & list) const;
 
  private:
+  /// Adds the places of a whole patch's vertices along the side of a run, without its ends.
+  void add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments, std::vector<double>& found)
+      const;
+  /// Adds the places where a run in a cut patch must be divided between the stops.
+  void divide(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found);
   /// Lays the chords of a run, which end at the stops.
   void lay(const EdgeRun& run, const ChordLimits& limits);
   /// Whether the chords of a run end at all stops.

@@ -138,9 +138,9 @@ class BorderSegments {
   std::span<const std::vector<std::uint32_t>> groups_;
 };
 
-/// Makes the borders even that patches refuse, and returns the patches that accept odd ones, with their distances there.
-/// The borders are made even together: a refusal must not depend on an earlier one. Each raises rates, which lowers the
-/// distances of those that were accepted.
+/// Makes the borders even that patches refuse, and returns the patches that accept odd ones, with their distances
+/// there. The borders are made even together: a refusal must not depend on an earlier one. Each raises rates, which
+/// lowers the distances of those that were accepted.
 template <class ForOddBorders>
 std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& borders, double tolerance,
                                                              const ForOddBorders& for_odd_borders) {

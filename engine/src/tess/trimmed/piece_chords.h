@@ -41,8 +41,8 @@ struct LaidChords {
 /// Sliver bound, for a part of a chain with the ends a and b and control points q: by the cross products
 /// c = (b - a) x (q - a), each point between curve and chord lies at most d = max |c| / |b - a| from the line of the
 /// chord. Away from the chord, in any one direction, it meets the curve. Towards the chord it meets it if no q lies
-/// beside the chord, seen in that direction. So it moves by at most max |c| / |b.u - a.u| along v, max |c| / |b.v - a.v|
-/// along u, or d across the chord. The shortest on the surface counts.
+/// beside the chord, seen in that direction. So it moves by at most max |c| / |b.u - a.u| along v,
+/// max |c| / |b.v - a.v| along u, or d across the chord. The shortest on the surface counts.
 class PieceChords {
  public:
   /// Appends the points of a chain but its start, and the parameters of the caller's curve there. `chain`: pieces that

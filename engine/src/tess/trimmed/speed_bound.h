@@ -16,8 +16,8 @@ struct SpeedBound {
   /// - m (w_max / w_min) 2 R (Floater 1992, Derivatives of rational Bezier curves, for each curve v = const: its
   ///   weights lie between those of the patch, its control points in the hull).
   ///
-  /// The product is at most |r_u| |r_v|. For polynomial patches of small degrees it also lies in the hull of the products
-  /// of all m (V_(i+1)j - V_ij) with all n (V_k(l+1) - V_kl): so it is about 0 for rectangles.
+  /// The product is at most |r_u| |r_v|. For polynomial patches of small degrees it also lies in the hull of the
+  /// products of all m (V_(i+1)j - V_ij) with all n (V_k(l+1) - V_kl): so it is about 0 for rectangles.
   static SpeedBound of(const BezierPatch& patch);
   /// Returns the bounds over other parameters, whose ranges are so long.
   SpeedBound over(double range_u, double range_v) const {
