@@ -231,6 +231,8 @@ struct MeshChange {
 ///
 /// - A vertex of several faces stands in the middle of the box of their points. How far it leaves a face is no part of
 ///   bound(); see gap() and edge_gaps(). A file whose faces are farther apart than the tolerance is meshed, and closed.
+/// - Vertices of faces at parameters of an edge nearer than 1e-5 of its range, and a small part of the tolerance, count
+///   as one; gap() includes this.
 /// - Chords of trimmed faces end at common parameters. A whole patch keeps its even borders: where it needs a vertex
 ///   more, one triangle becomes a fan.
 /// - Borders along such edges are joined by them, not by welding.
