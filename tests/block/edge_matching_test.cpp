@@ -198,5 +198,36 @@ TEST(EdgeMatching, EdgesShorterThanTheDistance) {
   EXPECT_EQ(counts_of(joined(cube(1e-6), 1e-3)), (Counts{{0, 24}}));
 }
 
+/// Two strips narrower than the distance, in line, apart by more than their width. Their long sides meet the faces
+/// above and below, so the short sides between them have the same vertices.
+TEST(EdgeMatching, ShortEdgesBetweenTheSameVerticesAreOne) {
+  constexpr double distance = 1e-3, width = 0.3 * distance, gap = 0.9 * distance, next = 1 + gap;
+  std::vector<ModelSurface> faces{quad({0, width, 0}, {2, width, 0}, {2, 1, 0}, {0, 1, 0}),
+                                  quad({0, -1, 0}, {2, -1, 0}, {2, 0, 0}, {0, 0, 0}),
+                                  quad({0, 0, 0}, {1, 0, 0}, {1, width, 0}, {0, width, 0})};
+  for (const ModelSurface& strip : {quad({next, 0, 0}, {2, 0, 0}, {2, width, 0}, {next, width, 0}),
+                                    quad({next, 0, 0}, {next, width, 0}, {2, width, 0}, {2, 0, 0})}) {
+    faces.push_back(strip);
+    const Shape shape = joined(faces, distance);
+    EXPECT_EQ(counts_of(shape), (Counts{{1, 8}, {2, 5}}));
+    EXPECT_NEAR(largest_gap(shape), gap, 1e-3 * gap);  // 1.05 gap if one ran the other way
+    faces.pop_back();
+  }
+}
+
+/// Four sides in parallel, each within the distance of the next alone. The end of the first divides the second, this
+/// place divides the third, and the third's the fourth.
+TEST(EdgeMatching, PlacesThatDivideACurveDivideItsNeighbours) {
+  constexpr double distance = 1e-3;
+  const auto wall = [](double x, double length, const Vec3& to) {
+    return quad({x, 0, 0}, {x, length, 0}, Vec3{x, length, 0} + to, Vec3{x, 0, 0} + to);
+  };
+  const ModelSurface first = wall(0, 1, {-1, 0, 0}), second = wall(0.5 * distance, 2, {0, 0, -1}),
+                     third = wall(1.2 * distance, 2, {0, 0, 1}), fourth = wall(2 * distance, 2, {1, 0, 0});
+  EXPECT_EQ(counts_of(joined({first, second}, distance)), (Counts{{1, 7}, {2, 1}}));
+  EXPECT_EQ(counts_of(joined({first, second, third}, distance)), (Counts{{1, 10}, {2, 2}}));
+  EXPECT_EQ(counts_of(joined({first, second, third, fourth}, distance)), (Counts{{1, 13}, {2, 3}}));
+}
+
 }  // namespace
 }  // namespace tessera::test
