@@ -68,6 +68,26 @@ TEST(TrimmedFace, KeepsBudgetsAndNamesItsParts) {
   EXPECT_EQ(parts[0].name, "face");
 }
 
+TEST(TrimmedFace, HasQuadsWhereCellsAreWhole) {
+  Face face(wavy(), {polygon({{0.3, 0.2}, {3.7, 0.4}, {3.5, 2.8}, {0.5, 2.6}})});
+  const Mesh plain = face.mesh({.tolerance = 1e-4});
+  const Mesh mesh = face.mesh({.tolerance = 1e-4, .quads = true});
+  const std::size_t cuts = face.set.cut_count();
+  ASSERT_EQ(cuts, face.set.patch_count() - 2);  // of 4 x 3 patches, 2 are whole
+  EXPECT_GT(mesh.quad_count(), mesh.triangle_count());
+  EXPECT_EQ(mesh.triangle_count() + 2 * mesh.quad_count(), plain.triangle_count());
+  for (std::size_t q = 0; q < mesh.quad_count(); ++q) {
+    const auto at = [&](std::size_t corner) { return &mesh.parameters[2 * std::size_t{mesh.quads[4 * q + corner]}]; };
+    for (std::size_t axis : {0u, 1u}) {  // opposite sides of a box
+      const bool first = at(0)[axis] == at(1)[axis] && at(2)[axis] == at(3)[axis];
+      ASSERT_TRUE(first || (at(1)[axis] == at(2)[axis] && at(3)[axis] == at(0)[axis])) << q;
+    }
+  }
+  const Mesh split = value_of(split_quads(mesh));
+  EXPECT_NEAR(plane_area(face, split), plane_area(face, plain), 1e-9);
+  EXPECT_EQ(value_of(check(mesh)).open_edges, value_of(check(plain)).open_edges);
+}
+
 TEST(TrimmedFace, HasDoublePositionsAndJoinedNormals) {
   Face face(wavy(), {circle({0.5, 0.5}, 0.3, true)});
   const Mesh exact = face.mesh({.tolerance = 1e-4, .precision = Precision::double_precision});

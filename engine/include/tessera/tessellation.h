@@ -123,9 +123,9 @@ struct TessellationOptions {
   /// `smallest`, which tries many plans. Meant for meshes that are drawn, stored or updated often.
   bool fewest = false;
   /// Whether whole cells are quads. With a tolerance, each cell that is not in a strip along a border is one quad, so
-  /// there are none where strips take all cells; with rates, each cell that is not at a pole. The corners of a quad are
-  /// those of a box of the patch's parameters, in which both of its triangles lie: all that is proven of the mesh holds
-  /// for both, by either diagonal.
+  /// there are none where strips take all cells, and in cut patches each cell that no loop touches; with rates, each
+  /// cell that is not at a pole. The corners of a quad are those of a box of the patch's parameters, in which both of
+  /// its triangles lie: all that is proven of the mesh holds for both, by either diagonal.
   bool quads = false;
   /// Edits: a patch keeps its segments while they keep the tolerances and have at most (1 + spare) times the cells of
   /// the best ones. Finite, at least 0.
@@ -222,8 +222,7 @@ struct MeshChange {
 /// - All bounds hold between the mesh and the kept part, in both directions; those of pixels and angles too.
 /// - With an angle, the edges along loops also turn by about that angle from one to the next; this is not proven.
 /// - Patches of one face share the vertices of their common sides; whole patches are as without loops.
-/// - Cut patches take positions from the set's double control points. They have no quads, and are not for uniform
-///   rates.
+/// - Cut patches take positions from the set's double control points. They are not for uniform rates.
 ///
 /// Edges of shapes (see Shape): all faces along an edge get vertices at the same parameters of the edge, and these have
 /// one position. So the mesh of a closed shell has no open edges at any tolerance, and those of an open shell are its

@@ -42,6 +42,7 @@ void CertifiedPlan::lay_out() {
     if (patch != next_cut) continue;
     vertices += cut->vertices.size();
     triangles += cut->triangles.size();
+    quads += cut->quad_count();
     next_cut = ++cut == cuts.end() ? patches : cut->patch;
   }
   first_vertex_[patches] = vertices;

@@ -59,6 +59,7 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   number(collapsed, limits.edges != nullptr, out);
   refine(limits, chord, out);
   merge(limits, out);
+  out.whole = band_;
   measure(limits.segments, chord, out);
   find_border_vertices(borders, limits.domain, limits.edges != nullptr, out);
 }
@@ -155,6 +156,14 @@ CutPatch::Box CutPatch::box_of(const Triangle& triangle) const {
     if (!is_pole(corner, false)) box.v0 = std::min(box.v0, at.v), box.v1 = std::max(box.v1, at.v);
   }
   return box;
+}
+
+bool CutPatch::is_cell(const Triangle& first, const Triangle& second) const {
+  if (first[0] != second[0] || first[2] != second[1]) return false;
+  const ParameterPoint &a = vertices[first[0]], &b = vertices[first[1]], &c = vertices[first[2]],
+                       &d = vertices[second[2]];
+  return (b.u == c.u && b.v == a.v && d.u == a.u && d.v == c.v) ||
+         (b.u == a.u && b.v == c.v && d.u == c.u && d.v == a.v);
 }
 
 // Bounds of a half or a quarter hold for triangles within it. A parameter is off by three roundings.

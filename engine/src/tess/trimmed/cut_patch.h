@@ -46,7 +46,9 @@ struct CutPatch {
   std::uint32_t patch = 0;
   bool is_crossed = false;               ///< chords still cross after all divisions, so it has no triangles
   std::vector<ParameterPoint> vertices;  ///< in the patch's own parameters; those of its grid come first, line by line
-  std::vector<Triangle> triangles;       ///< counter-clockwise in the parameters
+  /// Counter-clockwise in the parameters. The first `whole` are those of whole cells, two and two.
+  std::vector<Triangle> triangles;
+  std::size_t whole = 0;
   std::vector<BorderVertex> on_borders;
   /// If the loops name edges: the chords along them, and all vertices on sides, by sides and places.
   std::vector<LoopSegment> loop_segments;
@@ -68,6 +70,26 @@ struct CutPatch {
     double distance(const ChordBound& chord) const;
   };
   Box box_of(const Triangle& triangle) const;
+  /// Calls quad({a, b, c, d}) for the cells that are whole, and triangle(Triangle) for the other triangles.
+  template <class VisitQuad, class VisitTriangle>
+  void for_faces(VisitQuad quad, VisitTriangle triangle) const {
+    for (std::size_t k = 0; k < triangles.size(); ++k) {
+      const Triangle& t = triangles[k];
+      if (k + 1 < whole && is_cell(t, triangles[k + 1])) {
+        ++k;
+        quad(std::array{t[0], t[1], t[2], triangles[k][2]});
+      } else {
+        triangle(t);
+      }
+    }
+  }
+  std::size_t quad_count() const {
+    std::size_t count = 0;
+    for_faces([&](const auto&) { ++count; }, [](const auto&) {});
+    return count;
+  }
+  /// Whether two triangles are the halves of a box of parameters, with the diagonal from the first corner of both.
+  bool is_cell(const Triangle& first, const Triangle& second) const;
   /// Extends `distance` and `widest` to a triangle.
   void measure(const Triangle& triangle, const ChordBound& chord);
 };

@@ -24,16 +24,32 @@ class CutWriter {
   void write(const CutPatch& cut) const {
     write_vertices(cut);
     for (const Side side : all_sides) take_border(cut, side);
+    out_.quads.empty() ? write_triangles(cut) : write_faces(cut);
+  }
+
+ private:
+  void write_triangles(const CutPatch& cut) const {
     const auto first = static_cast<std::uint32_t>(plan_.first_vertex(cut.patch));
-    const std::size_t place = out_.quads.empty() ? plan_.first_triangle(cut.patch) : plan_.first_strip(cut.patch);
+    const std::size_t place = plan_.first_triangle(cut.patch);
     std::uint32_t* index = out_.indices.data() + 3 * place;
     for (const CutPatch::Triangle& triangle : cut.triangles)
       for (const std::uint32_t vertex : triangle) *index++ = first + vertex;
     if (!out_.patch.empty())
       std::fill_n(out_.patch.begin() + static_cast<std::ptrdiff_t>(place), cut.triangles.size(), cut.patch);
   }
-
- private:
+  /// Writes quads and the other triangles.
+  void write_faces(const CutPatch& cut) const {
+    const auto first = static_cast<std::uint32_t>(plan_.first_vertex(cut.patch));
+    std::size_t quad = plan_.first_quad(cut.patch), triangle = plan_.first_strip(cut.patch);
+    const auto put = [&](const auto& corners, std::span<std::uint32_t> indices, std::span<std::uint32_t> patches,
+                         std::size_t& place) {
+      for (std::size_t c = 0; c < corners.size(); ++c) indices[corners.size() * place + c] = first + corners[c];
+      if (!patches.empty()) patches[place] = cut.patch;
+      ++place;
+    };
+    cut.for_faces([&](const auto& corners) { put(corners, out_.quads, out_.quad_patch, quad); },
+                  [&](const auto& corners) { put(corners, out_.indices, out_.patch, triangle); });
+  }
   void write_vertices(const CutPatch& cut) const {
     const BezierPatch& patch = set_.patches[cut.patch];
     PatchPoints points(patch, set_.origin);
