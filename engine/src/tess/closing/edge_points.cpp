@@ -53,18 +53,23 @@ class Maker {
   }
 
   /// Finds the parameters that count as one: those within `same`. Two of one use do only within `least`, so that no
-  /// triangle loses its area.
+  /// triangle loses its area. Equal parameters always do.
   void find_places(double same, double least) {
     places_.clear();
     std::size_t first = 0;  // the first stop of the place
     for (std::size_t k = 0; k < stops_.size(); ++k) {
-      const auto is_apart = [&](const Stop& of) { return of.use == stops_[k].use && stops_[k].s - of.s > least; };
+      const double s = stops_[k].s;
+      const auto is_apart = [&](const Stop& of) { return of.use == stops_[k].use && s - of.s > least; };
       const std::span<const Stop> before = std::span(stops_).subspan(first, k - first);
-      if (places_.empty() || stops_[k].s - places_.back().to > same || std::ranges::any_of(before, is_apart)) {
-        places_.push_back({stops_[k].s, stops_[k].s});
+      if (places_.empty() || s - places_.back().to > same) {
+        places_.push_back({s, s});
         first = k;
+      } else if (std::ranges::any_of(before, is_apart)) {
+        for (first = k; stops_[first - 1].s == s;) --first;
+        places_.back().to = stops_[first - 1].s;
+        places_.push_back({s, s});
       }
-      places_.back().to = stops_[k].s;
+      places_.back().to = s;
     }
   }
 

@@ -64,8 +64,9 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   if (side.empty()) return;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
   const bool along_u = runs_along_u(run.side);
-  const bool is_point =
-      side.size() == 1 || (!cut_of(run.patch) && divisions_[run.patch].collapsed.has(edge_of(run.side)));
+  const CutPatch* const cut = cut_of(run.patch);
+  const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != CutPatch::none
+                            : divisions_[run.patch].collapsed.has(edge_of(run.side));
   if (is_point) {
     const PatchVertex point{run.patch, side.front().vertex};
     for (const Place& place : side) same_.push_back({point, PatchVertex{run.patch, place.vertex}});
