@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 13> internal_export{
+constexpr std::array<std::string_view, 14> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -19,6 +19,7 @@ constexpr std::array<std::string_view, 13> internal_export{
     "tessera::UniformGrid::make",
     "tessera::UniformGrid::run",
     "tessera::PatchSet::Impl::box",
+    "tessera::TrimRegion::Impl::for_points",
     "tessera::check_parts",
     "tessera::ViewChecks::add",
     "tessera::ViewChecks::status",

@@ -32,9 +32,9 @@ Model sample_of_shapes() {
   shape.name = std::string("part");
   const Model surfaces = sample();
   const std::vector<Vec3> ends{{0, 0, 0}, {1, 0, 0}};
-  const Result<Curve> line = Curve::bezier(ends);
+  const Result<Curve> line = Curve::bezier(ends), back = Curve::bezier(std::vector<Vec3>{ends[1], ends[0]});
   shape.faces = {{surfaces.surfaces[0]}, {surfaces.surfaces[1]}};
-  shape.faces[0].trims = std::vector<TrimLoop>{{{*line, *line}, true, {{0, true, *line}, {1, false}}}};
+  shape.faces[0].trims = std::vector<TrimLoop>{{{*line, *line}, true, {{0, true, *back}, {1, false}}}};
   shape.faces[1].outline = std::vector<TrimLoop>{{{*line}, false, {{0, false}}}};
   shape.faces[1].colour = Colour{0.25, 0.5, 1, 0.75};
   shape.vertices = {{{1, 2, 3}, 1e-5}, {{4, 5, 6}, 1e-6}};

@@ -103,21 +103,17 @@ struct HitLists {
 /// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
   /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
-  /// surface. It shows what the tessellation shows, with true t, u, v and normals.
-  ///
+  /// surface. It shows what the tessellation shows, with true t, u, v and normals. Trimmed patches are met as wholes.
   /// The facets decide what is met and in which order. A silhouette may be missed or flagged. If two surfaces lie
-  /// nearer to each other than to their facets, the farther one may be returned. Trimmed patches are met as wholes.
+  /// nearer to each other than to their facets, the farther one may be returned.
   grid,
   /// The surface itself, of the control points in double. Every intersection is found, also at shared borders and
   /// poles. Silhouettes are found down to the tolerance. A returned hit lies within the tolerance of the ray; hits that
-  /// are not flagged uncertified are roots up to rounding.
+  /// are not flagged uncertified are roots up to rounding. Rays meet what the loops of a trimmed face keep; where a
+  /// loop may pass on either side of a root, the hit is uncertified. They may slip between faces at their loops.
   ///
   /// Pieces of patches lie in an Embree BVH. Interval Newton steps in float search each piece; where these prove
   /// nothing, branch and bound in double does. Every rounding is bounded, also for far origins.
-  ///
-  /// Of a trimmed face, rays meet what its loops keep: TrimRegion::locate() answers for the root's parameters. Where a
-  /// loop may pass on either side of the root, the hit is uncertified. Rays may slip between faces whose loops do not
-  /// meet in space.
   exact,
 };
 

@@ -38,7 +38,7 @@ Status LeafTrims::build(const SetView& set, std::span<const Leaf> leaves, const 
   if (Status status = parallel_for(made.size(), 1, quiet, locate_points); !status.ok()) return status;
   regions_.clear();
   for (std::optional<TrimRegion>& region : made) regions_.push_back(*std::move(region));
-  regions_of_.assign(set.patch_count(), no_id);
+  regions_of_.assign(set.patch_count(), std::uint32_t{no_id});
   for (const PatchTrims::Cut& cut : trims_->cuts) regions_of_[cut.patch] = cut.region;
   uses_.resize(leaves.size());
   const auto find_uses = [&](std::size_t begin, std::size_t end) {
