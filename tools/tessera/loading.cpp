@@ -220,6 +220,20 @@ Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings
   return with_places(loaded, 0, make_patch_set(loaded.model, loaded.grids, packing));
 }
 
+Result<PatchSet> pack_faces(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
+  if (options.untrimmed || loaded.trimmed() == 0 || !loaded.model.instances.empty())
+    return pack(loaded, options, timings);
+  const Result<std::optional<JoinedShape>> joined = [&] {
+    const auto phase = timings.phase("join");
+    Shape faces;
+    for (const ModelSurface& surface : loaded.model.surfaces) faces.faces.push_back({surface});
+    return joined_if_free(faces);
+  }();
+  if (!joined || !*joined) return pack(loaded, options, timings);
+  const auto phase = timings.phase("pack");
+  return with_places(loaded, 0, make_patch_set((*joined)->shape, {}, options.fit));
+}
+
 Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
                             const ModelOptions& options, Timings& timings) {
   const auto phase = timings.phase("pack");

@@ -58,6 +58,10 @@ Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings
 /// each surface whose loops cannot be used. Errors name file and surface.
 Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings);
 
+/// Packs as pack(). If some surface is trimmed, and the file states no edges, those that run side by side are joined, so
+/// that faces meet along them; where that fails, faces stay unconnected.
+Result<PatchSet> pack_faces(const Loaded& loaded, const ModelOptions& options, Timings& timings);
+
 /// Packs the faces of a shape in the same way. An instance of it has the surfaces from `first_surface` on, which
 /// messages name; lengths grow by at most `stretch` where instances stand.
 Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,

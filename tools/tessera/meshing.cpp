@@ -233,7 +233,7 @@ bool suits_shapes(const TessellateOptions& options, const Loaded& loaded) {
 }
 
 Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, Timings& timings) {
-  const Result<PatchSet> set = pack(loaded, options.models, timings);
+  const Result<PatchSet> set = pack_faces(loaded, options.models, timings);
   if (!set) return set.status();
   const auto phase = timings.phase("evaluate");
   const SetUse use{.set = *set};

@@ -14,6 +14,7 @@ inline constexpr std::array<Side, 4> all_sides{Side::v0, Side::u1, Side::v1, Sid
 constexpr bool runs_along_u(Side side) { return side == Side::v0 || side == Side::v1; }
 /// Whether the ring runs against the parameter along a border.
 constexpr bool is_backward(Side side) { return side == Side::v1 || side == Side::u0; }
+constexpr Side opposite(Side side) { return static_cast<Side>((static_cast<int>(side) + 2) % 4); }
 constexpr Edge edge_of(Side side) {
   constexpr Edge edges[] = {Edge::v0, Edge::u1, Edge::v1, Edge::u0};
   return edges[static_cast<int>(side)];

@@ -18,13 +18,7 @@ void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) 
   const std::span<const EdgeRun> runs = runs_.of(edge);
   for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
     const std::size_t first = segments.size();
-    for (; end < runs.size() && runs[end].use == runs[begin].use; ++end) {
-      const std::span<const TrimPiece> pieces = runs_.pieces(runs[end]);
-      const PatchEdges::Face& face = runs_.edges().faces[runs[end].face];
-      join_corner(face, pieces.front().start());
-      join_corner(face, pieces.back().end());
-      append(runs[end], segments);
-    }
+    for (; end < runs.size() && runs[end].use == runs[begin].use; ++end) append(runs[end], segments);
     const std::span<EdgeSegment> of_use = std::span(segments).subspan(first);
     std::ranges::sort(of_use, [](const EdgeSegment& a, const EdgeSegment& b) {
       return a.from != b.from ? a.from < b.from : a.to < b.to;
@@ -50,19 +44,24 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
   const CutPatch* const cut = cut_of(run.patch);
   if (!cut) return;
   auto chord = std::ranges::lower_bound(cut->loop_segments, run.first, {}, &CutPatch::LoopSegment::piece);
-  for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord)
+  for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord) {
+    join_across(run, *cut, chord->start);
+    join_across(run, *cut, chord->end);
     append({.run = &run,
             .low = {run.patch, chord->start},
             .high = {run.patch, chord->end},
             .start = chord->start,
             .end = chord->end},
            chord->from, chord->to, segments);
+  }
 }
 
 void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
   const std::vector<Place>& side = places_of(run.patch, run.side);
   if (side.empty()) return;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
+  join_corner(runs_.edges().faces[run.face], pieces.front().start());
+  join_corner(runs_.edges().faces[run.face], pieces.back().end());
   const bool along_u = runs_along_u(run.side);
   const CutPatch* const cut = cut_of(run.patch);
   const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != CutPatch::none
@@ -175,6 +174,36 @@ std::optional<std::uint32_t> EdgeSegments::corner_vertex(std::uint32_t patch, bo
   }
   if (divisions_[patch].empty) return {};
   return ring_vertex(patch, end_v ? (end_u ? 2 : 3) : (end_u ? 1 : 0), 0);
+}
+
+// A neighbour often has the vertex in a run of its own, but not where the loop leaves the patch along a line that closes
+// a gap, or where rounding puts a chord's end on a side.
+void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uint32_t vertex) {
+  const ParameterPoint& local = cut.vertices[vertex];
+  const bool on_u = local.u == 0 || local.u == 1, on_v = local.v == 0 || local.v == 1;
+  const PatchEdges::Face& face = runs_.edges().faces[run.face];
+  if ((!on_u && !on_v) || face.patches.size() == 1) return;
+  const Domain& domain = set_.sources[run.patch].domain;
+  if (on_u && on_v)
+    return join_corner(face, {local.u == 0 ? domain.u0 : domain.u1, local.v == 0 ? domain.v0 : domain.v1});
+  const bool before = (on_u ? local.u : local.v) == 0;
+  const Side side = on_u ? (before ? Side::u0 : Side::u1) : (before ? Side::v0 : Side::v1);
+  const TrimRegion::Impl& region = impl_of(face.region);
+  std::size_t a = cell_of(region.lines.u.lines, domain.u0), b = cell_of(region.lines.v.lines, domain.v0);
+  if (before && (on_u ? a : b) == 0) return;
+  if (on_u)
+    before ? --a : ++a;
+  else
+    before ? --b : ++b;
+  if (a + 1 == region.lines.u.lines.size() || b == region.count_v()) return;
+  const std::uint32_t other = face.patches[a * region.count_v() + b];
+  const std::vector<Place>& own = places_of(run.patch, side);
+  const auto at = std::ranges::find(own, vertex, &Place::vertex);
+  if (other == no_id || at == own.end()) return;
+  const std::vector<Place>& places = places_of(other, opposite(side));
+  const auto place = std::ranges::lower_bound(places, at->along, {}, &Place::along);
+  if (place != places.end() && place->along == at->along)
+    same_.push_back({PatchVertex{run.patch, vertex}, PatchVertex{other, place->vertex}});
 }
 
 void EdgeSegments::join_corner(const PatchEdges::Face& face, const ParameterPoint& at) {

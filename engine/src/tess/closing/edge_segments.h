@@ -53,7 +53,7 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   void append(std::size_t edge, std::vector<EdgeSegment> & segments);
   /// Appends the segments of lines that close gaps between curves, after those of all edges. They have no parameters.
   void append_gaps(std::vector<EdgeSegment> & segments);
-  /// Vertices that are one, in pairs: corners of a face's patches, and the points of a side that is one point.
+  /// Vertices that are one, in pairs: corners of a face's patches, ends of chords on lines between them, and the points of a side that is one point.
   std::span<const std::array<PatchVertex, 2>> same() const { return same_; }
   std::span<const InsertedVertex> inserted() const { return inserted_; }
   /// Inserts a vertex into a segment, at a parameter of the edge between its ends. Returns the vertex.
@@ -80,7 +80,10 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   PatchVertex insert_on_side(std::uint32_t patch, Side side, std::uint32_t start, std::uint32_t end, double along);
   std::uint32_t ring_vertex(std::uint32_t patch, std::size_t side, int k) const;
   std::optional<std::uint32_t> corner_vertex(std::uint32_t patch, bool end_u, bool end_v) const;
+  /// Joins the vertices of a face's patches at a corner of them, if the point is one.
   void join_corner(const PatchEdges::Face& face, const ParameterPoint& at);
+  /// Joins a vertex of a chord that lies on a side of its patch to those of the face's other patches there.
+  void join_across(const EdgeRun& run, const CutPatch& cut, std::uint32_t vertex);
 
   const PatchSet::Impl& set_;
   const EdgeRuns& runs_;
