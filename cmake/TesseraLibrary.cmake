@@ -59,6 +59,19 @@ function(tessera_library name)
   endforeach()
 endfunction()
 
+# tessera_c_library(): libtessera_c, for C and for languages that call C, as tessera::c. It is always shared, holds all of
+# Tessera that it uses, and exports the functions of tessera_c.h alone, with the version TSR_0.
+function(tessera_c_library)
+  set(exports ${PROJECT_SOURCE_DIR}/cmake/tessera_c.map)
+  add_library(tessera_c_library SHARED $<TARGET_OBJECTS:tessera_c>)
+  add_library(tessera::c ALIAS tessera_c_library)
+  set_target_properties(tessera_c_library PROPERTIES OUTPUT_NAME tessera_c EXPORT_NAME c INSTALL_RPATH "$ORIGIN"
+    VERSION 0.${PROJECT_VERSION} SOVERSION 0 LINK_DEPENDS ${exports})
+  target_link_libraries(tessera_c_library PRIVATE tessera_internal::ray tessera_internal::io tessera_compile)
+  target_link_options(tessera_c_library PRIVATE "LINKER:--version-script=${exports}" LINKER:--gc-sections)
+  target_include_directories(tessera_c_library INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/engine/include>)
+endfunction()
+
 # tessera_uses_cad_reader(TARGET): a program of the tests or the benchmarks that reads CAD files, where they can be read.
 function(tessera_uses_cad_reader target)
   if(TESSERA_HAS_CAD_READER)

@@ -106,7 +106,8 @@ TEST(ExportedSymbols, NothingPublicIsLeftOut) {
 // Each public header exports what it declares, from the namespace's beginning to its end.
 TEST(ExportedSymbols, PublicHeadersSaySo) {
   for (const std::string& path : files_under("engine/include/tessera")) {
-    if (path.ends_with("/tessera.h")) continue;  // it declares nothing
+    if (path.ends_with("/tessera.h")) continue;    // it declares nothing
+    if (path.ends_with("/tessera_c.h")) continue;  // it has no namespace; the test c.abi lists its functions
     const std::string text = read_text(path);
     EXPECT_NE(text.find("\n#pragma GCC visibility push(default)\nnamespace tessera::inline abi_0_1 {\n"),
               std::string::npos)

@@ -5,6 +5,9 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <map>
+#include <mutex>
+
 #ifdef TESSERA_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -58,6 +61,17 @@ ApartTasks::~ApartTasks() = default;
 void ApartTasks::run(FunctionRef<void()> call) {
   const auto run = [&](const tbb::blocked_range<std::size_t>&) { call(); };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, 1, 1), run, group_->context);
+}
+
+void on_threads(int threads, FunctionRef<void()> work) {
+  static std::mutex mutex;
+  static std::map<int, tbb::task_arena>& arenas = *new std::map<int, tbb::task_arena>;  // oneTBB may end before them
+  tbb::task_arena* arena = nullptr;
+  {
+    const std::lock_guard lock(mutex);
+    arena = &arenas.try_emplace(threads, threads).first->second;
+  }
+  arena->execute([&] { work(); });
 }
 
 void without_other_tasks(FunctionRef<void()> call) {

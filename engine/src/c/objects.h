@@ -1,0 +1,76 @@
+#pragma once
+// The objects behind the handles.
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "c/calls.h"
+#include "tessera/evaluate.h"
+#include "tessera/model.h"
+#include "tessera/patch_set.h"
+#include "tessera/ray_scene.h"
+#include "tessera/tessellation.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A model never changes.
+struct CModel : Object {
+  static constexpr Kind of_kind = Kind::model;
+  explicit CModel(Model of) : Object(of_kind), model(std::move(of)) {}
+  Model model;
+};
+
+struct CSet : Object {
+  static constexpr Kind of_kind = Kind::set;
+  CSet(PatchSet of, std::shared_ptr<const CModel> from, std::optional<std::size_t> its_shape)
+      : Object(of_kind), set(std::move(of)), model(std::move(from)), shape(its_shape) {}
+
+  /// The map from surfaces to patches, made by the first call. Errors: those of SurfaceMap::make().
+  Result<const SurfaceMap*> surface_map() {
+    const std::lock_guard lock(map_mutex_);
+    if (!map_) {
+      Result<SurfaceMap> made = SurfaceMap::make(set);
+      if (!made) return made.status();
+      map_.emplace(*std::move(made));
+    }
+    return &*map_;
+  }
+
+  PatchSet set;
+  std::shared_ptr<const CModel> model;  ///< what it was made of
+  std::optional<std::size_t> shape;     ///< of the model, if it is one shape's
+  Usage usage;
+
+ private:
+  std::mutex map_mutex_;
+  std::optional<SurfaceMap> map_;
+};
+
+struct CPlan : Object {
+  static constexpr Kind of_kind = Kind::plan;
+  CPlan(Tessellation of, std::shared_ptr<CSet> from, bool normals)
+      : Object(of_kind), plan(std::move(of)), set(std::move(from)), has_normals(normals) {}
+  Tessellation plan;
+  std::shared_ptr<CSet> set;
+  bool has_normals;
+  Usage usage;
+};
+
+struct CScene : Object {
+  static constexpr Kind of_kind = Kind::scene;
+  CScene(RayScene of, std::shared_ptr<CSet> from) : Object(of_kind), set(std::move(from)), scene(std::move(of)) {}
+  std::shared_ptr<CSet> set;  ///< outlives the scene, which refers to it
+  RayScene scene;
+  Usage usage;
+};
+
+/// Hits never change.
+struct CHits : Object {
+  static constexpr Kind of_kind = Kind::hits;
+  CHits() : Object(of_kind) {}
+  HitLists lists;
+};
+
+}  // namespace tessera::inline abi_0_1

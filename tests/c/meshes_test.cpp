@@ -1,0 +1,164 @@
+// Meshes through C: those of C++, byte for byte; updates, files, and shapes at their places.
+
+#include "c/c_objects.h"
+#include "support/scratch_folder.h"
+#include "tessera/io.h"
+#include "tessera/tessellation.h"
+
+namespace tessera::test {
+namespace {
+
+Mesh mesh_in_cpp(const std::vector<BezierPatch>& patches, const TessellationOptions& options) {
+  const PatchSet set = value_of(PatchSet::make(patches));
+  const Tessellation plan = value_of(Tessellation::make(set, options));
+  Mesh mesh = value_of(plan.allocate());
+  EXPECT_TRUE(plan.run(set, mesh.views()).ok());
+  return mesh;
+}
+
+void expect_same(const MeshMemory& found, const Mesh& wanted) {
+  EXPECT_EQ(found.positions, wanted.positions);
+  EXPECT_EQ(found.normals, wanted.normals);
+  EXPECT_EQ(found.triangles, wanted.indices);
+  EXPECT_EQ(found.patches, wanted.patches);
+  EXPECT_EQ(found.quads, wanted.quads);
+}
+
+TEST(CMesh, BytesOfCpp) {
+  const std::vector<BezierPatch> patches = wavy_field(3, 4);
+  const Handle<tsr_set> set = set_of(patches);
+  const struct {
+    std::uint32_t flags;
+    TessellationOptions options;
+  } cases[] = {{0, {.tolerance = 1e-3}},
+               {TSR_PLAN_RELATIVE, {.tolerance = 1e-3, .relative = true}},
+               {TSR_PLAN_QUADS, {.tolerance = 1e-3, .quads = true}},
+               {TSR_PLAN_SHARE, {.tolerance = 1e-3, .share_vertices = true}},
+               {TSR_PLAN_FEWEST, {.tolerance = 1e-3, .fewest = true}}};
+  for (const auto& [flags, options] : cases) {
+    const Handle<tsr_plan> plan = plan_of(set.get(), 1e-3, flags);
+    MeshMemory memory(plan.get());
+    const tsr_mesh mesh = memory.mesh();
+    ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr)) << flags;
+    expect_same(memory, mesh_in_cpp(patches, options));
+  }
+}
+
+TEST(CMesh, OptionsOfEveryKind) {
+  const Handle<tsr_set> set = set_of(wavy_field(3, 3));
+  tsr_plan_options options;
+  tsr_plan_defaults(&options);
+  options.angle = 0.1, options.crease_angle = 0.01, options.pixels = 0.5;
+  options.eye[2] = 10, options.target[2] = 0, options.target[1] = 0;
+  tsr_plan* made = nullptr;
+  ASSERT_C(tsr_plan_new(&made, set.get(), &options, nullptr));
+  const Handle<tsr_plan> plan(made);
+  tsr_plan_info info = sized<tsr_plan_info>();
+  ASSERT_C(tsr_plan_describe(plan.get(), &info));
+  EXPECT_TRUE(info.is_proven);
+  EXPECT_GT(info.angle, 0);
+  EXPECT_LE(info.angle, 0.1);
+  EXPECT_GT(info.pixels, 0);
+  EXPECT_LE(info.pixels, 0.5);
+  tsr_plan_defaults(&options);
+  options.rate_u = 3, options.rate_v = 5;
+  ASSERT_C(tsr_plan_new(&made, set.get(), &options, nullptr));
+  const Handle<tsr_plan> uniform(made);
+  ASSERT_C(tsr_plan_describe(uniform.get(), &info));
+  EXPECT_EQ(info.triangles, 9u * 3 * 5 * 2);
+  EXPECT_FALSE(info.is_proven);
+  EXPECT_EQ(info.bound, std::numeric_limits<double>::infinity());
+}
+
+TEST(CMesh, StridesPlaceRecords) {
+  const std::vector<BezierPatch> patches = wavy_field(2, 2);
+  const Handle<tsr_plan> plan = plan_of(set_of(patches).get(), 1e-2);
+  MeshMemory packed(plan.get());
+  const tsr_mesh mesh = packed.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  const std::size_t count = packed.positions.size() / 3;
+  std::vector<float> columns(3 * count), records(8 * count);
+  tsr_mesh other = mesh;
+  other.position = {columns.data(), count, sizeof(float), static_cast<std::int64_t>(count * sizeof(float))};
+  other.normal = {records.data() + 4, count, 8 * sizeof(float), sizeof(float)};
+  ASSERT_C(tsr_plan_write(plan.get(), &other, nullptr));
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(columns[c * count + k], packed.positions[3 * k + c]);
+      EXPECT_EQ(records[8 * k + 4 + c], packed.normals[3 * k + c]);
+    }
+}
+
+TEST(CMesh, UpdatesFollowEdits) {
+  std::vector<BezierPatch> patches = wavy_field(2, 2);
+  const Handle<tsr_set> set = set_of(patches);
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-2);
+  MeshMemory memory(plan.get());
+  tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  std::vector<Vec3> points(patches[3].points().begin(), patches[3].points().end());
+  points[5].z += 1e-3;
+  const std::uint32_t patch = 3;
+  std::int32_t topology = -1;
+  ASSERT_C(tsr_plan_update(plan.get(), &patch, 1, &points[0].x, 16, &mesh, &topology, nullptr));
+  EXPECT_EQ(topology, 0);
+  std::vector<double> kept(48);
+  ASSERT_C(tsr_set_patch(set.get(), 3, nullptr, kept.data(), nullptr));
+  EXPECT_EQ(kept[5 * 3 + 2], points[5].z);
+  MeshMemory again(plan.get());
+  const tsr_mesh anew = again.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &anew, nullptr));
+  EXPECT_EQ(memory.positions, again.positions);
+  points[5].z += 5;
+  ASSERT_C(tsr_plan_update(plan.get(), &patch, 1, &points[0].x, 16, &mesh, &topology, nullptr));
+  EXPECT_EQ(topology, 1);
+}
+
+TEST(CMesh, ChecksAndFiles) {
+  const ScratchFolder folder;
+  const Handle<tsr_set> set = set_of(wavy_field(2, 2));
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-2);
+  MeshMemory memory(plan.get());
+  const tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  tsr_mesh_report report = sized<tsr_mesh_report>();
+  ASSERT_C(tsr_mesh_check(&mesh, &report));
+  EXPECT_EQ(report.triangles, mesh.triangle_count);
+  EXPECT_GT(report.open_edges, 0u);
+  EXPECT_EQ(report.t_junctions, 0u);
+  const std::string path = folder / "wavy.ply";
+  ASSERT_C(tsr_mesh_save(&mesh, set.get(), path.c_str()));
+  const Mesh read = value_of(read_mesh(path));
+  EXPECT_EQ(read.triangle_count(), mesh.triangle_count);
+  tsr_set_info info = sized<tsr_set_info>();
+  ASSERT_C(tsr_set_describe(set.get(), &info));
+  EXPECT_NEAR(read.positions[0], memory.positions[0] + info.origin[0], 1e-6);
+  expect_c_error(tsr_mesh_save(&mesh, set.get(), (folder / "wavy.xyz").c_str()), TSR_UNSUPPORTED, ".xyz");
+}
+
+TEST(CMesh, ShapesAtTheirPlaces) {
+  const ScratchFolder folder;
+  const Handle<tsr_model> model = model_of(wavy_field(1, 2));
+  tsr_model* made = nullptr;
+  ASSERT_C(tsr_model_join(&made, model.get(), 0));
+  const Handle<tsr_model> joined(made);
+  tsr_model_info info = sized<tsr_model_info>();
+  ASSERT_C(tsr_model_describe(joined.get(), &info));
+  EXPECT_EQ(info.shapes, 1u);
+  EXPECT_EQ(info.instances, 1u);
+  const Handle<tsr_set> set = set_of(joined.get(), 0, 0);
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-2);
+  MeshMemory memory(plan.get());
+  const tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  const tsr_mesh* const meshes[] = {&mesh};
+  const tsr_set* const sets[] = {set.get()};
+  const std::string path = folder / "two.glb";
+  ASSERT_C(tsr_model_save_meshes(joined.get(), meshes, sets, 1, path.c_str()));
+  EXPECT_EQ(value_of(read_mesh(path)).triangle_count(), mesh.triangle_count);
+  expect_c_error(tsr_model_save_meshes(joined.get(), meshes, sets, 2, path.c_str()), TSR_COUNT_MISMATCH, "1 shapes");
+  expect_c_error(tsr_model_save_meshes(model.get(), meshes, sets, 1, path.c_str()), TSR_INVALID_ARGUMENT, "no shapes");
+}
+
+}  // namespace
+}  // namespace tessera::test
