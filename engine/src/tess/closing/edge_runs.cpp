@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "base/impl_access.h"
-#include "block/coedge_parameter.h"
 #include "block/patch_trims.h"
 #include "tess/trimmed/cut_patch.h"
 #include "tess/trimmed/patch_sides.h"
@@ -83,10 +82,10 @@ std::optional<WholeBorder> whole_border(const EdgeRuns& runs, const EdgeRun& run
   const double begin = along_u ? domain.u0 : domain.v0, end = along_u ? domain.u1 : domain.v1;
   if (ends_of(pieces, along_u) != std::pair(begin, end)) return {};
   WholeBorder border{{}, 4 * run.patch + static_cast<std::uint32_t>(run.side)};
-  for (int k = 0; k <= 4; ++k) {
-    const double t = parameter_at(pieces, along_u, line_at(begin, end, Segments(4), k));
-    border.quarters[static_cast<std::size_t>(k)] = runs.to_edge(run.face, pieces.front(), t);
-  }
+  const CurveAlongEdge curve = runs.curve(run);
+  for (int k = 0; k <= 4; ++k)
+    border.quarters[static_cast<std::size_t>(k)] =
+        curve.to_edge(parameter_at(pieces, along_u, line_at(begin, end, Segments(4), k)));
   if (border.quarters.front() > border.quarters.back()) std::ranges::reverse(border.quarters);
   return border;
 }
@@ -134,20 +133,11 @@ const EdgeRun* EdgeRuns::run_of(std::uint32_t face, std::uint32_t first, std::si
   return run.end - run.first == count ? &run : nullptr;
 }
 
-const Coedge* EdgeRuns::coedge(std::uint32_t face, const TrimPiece& piece) const {
-  if (piece.loop == TrimPiece::none || piece.curve_index == TrimPiece::none) return nullptr;
+CurveAlongEdge EdgeRuns::curve(std::uint32_t face, const TrimPiece& piece) const {
+  if (piece.loop == TrimPiece::none || piece.curve_index == TrimPiece::none) return {};
   const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
-  return loop.coedges.empty() ? nullptr : &loop.coedges[piece.curve_index];
-}
-
-double EdgeRuns::to_edge(std::uint32_t face, const TrimPiece& piece, double t) const {
-  const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
-  return edge_parameter(loop.coedges[piece.curve_index], loop.curves[piece.curve_index], t);
-}
-
-double EdgeRuns::to_curve(std::uint32_t face, const TrimPiece& piece, double s) const {
-  const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
-  return curve_parameter(loop.coedges[piece.curve_index], loop.curves[piece.curve_index], s);
+  if (loop.coedges.empty()) return {};
+  return {&loop.coedges[piece.curve_index], &loop.curves[piece.curve_index]};
 }
 
 void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
@@ -164,7 +154,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
     EdgeRun run;
     run.first = piece++;
     const TrimPiece& at = pieces[run.first];
-    const Coedge* const coedge = this->coedge(face, at);
+    const Coedge* const coedge = curve(face, at).coedge;
     if (!coedge && at.curve_index != TrimPiece::none) continue;
     const Along along = along_of(at, region.lines);
     while (piece < pieces.size() && goes_on(pieces[piece - 1], pieces[piece], along, region.lines)) ++piece;

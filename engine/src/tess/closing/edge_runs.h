@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "block/coedge_parameter.h"
 #include "block/patch_edges.h"
 #include "block/patch_set_impl.h"
 #include "tess/cells/patch_side.h"
@@ -28,6 +29,15 @@ struct EdgeRun {
   std::uint32_t patch = 0;
   bool is_side = false;
   Side side{};  ///< if it runs along one
+};
+
+/// A curve of a face's loop, and the use of an edge that it has. A curve without an edge has neither.
+struct CurveAlongEdge {
+  const Coedge* coedge = nullptr;
+  const Curve* curve = nullptr;
+  /// The edge's parameter at one of the curve, and the other way round, if there is an edge.
+  double to_edge(double t) const { return edge_parameter(*coedge, *curve, t); }
+  double to_curve(double s) const { return curve_parameter(*coedge, *curve, s); }
 };
 
 /// Bounds on the share of an edge's range within which two parameters count as one. Faces of one edge rarely have equal
@@ -66,11 +76,9 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
     for (const auto& [of, run] : std::ranges::equal_range(on_sides_, border, {}, place)) visit(runs_[run]);
   }
   std::span<const TrimPiece> pieces(const EdgeRun& run) const;
-  /// The use of an edge that a piece has; null if it has none.
-  const Coedge* coedge(std::uint32_t face, const TrimPiece& piece) const;
-  /// The edge's parameter at one of the piece's curve, and the other way round. The piece must have a coedge.
-  double to_edge(std::uint32_t face, const TrimPiece& piece, double t) const;
-  double to_curve(std::uint32_t face, const TrimPiece& piece, double s) const;
+  /// The curve of a piece's loop, and the edge along it.
+  CurveAlongEdge curve(std::uint32_t face, const TrimPiece& piece) const;
+  CurveAlongEdge curve(const EdgeRun& run) const { return curve(run.face, pieces(run).front()); }
   const PatchEdges& edges() const { return *edges_; }
 
  private:

@@ -30,12 +30,9 @@ void EdgeSegments::append_gaps(std::vector<EdgeSegment>& segments) {
   for (const EdgeRun& run : runs_.gaps()) append(run, segments);
 }
 
-void EdgeSegments::append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const {
-  if (segment.run->edge != no_id) {
-    const TrimPiece& piece = runs_.pieces(*segment.run).front();
-    segment.from = runs_.to_edge(segment.run->face, piece, from);
-    segment.to = runs_.to_edge(segment.run->face, piece, to);
-  }
+void EdgeSegments::append(EdgeSegment segment, const CurveAlongEdge& curve, double from, double to,
+                          std::vector<EdgeSegment>& segments) {
+  if (curve.coedge) segment.from = curve.to_edge(from), segment.to = curve.to_edge(to);
   if (segment.from > segment.to) std::swap(segment.from, segment.to), std::swap(segment.low, segment.high);
   segments.push_back(segment);
 }
@@ -43,6 +40,7 @@ void EdgeSegments::append(EdgeSegment segment, double from, double to, std::vect
 void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
   const CutPatch* const cut = cut_of(run.patch);
   if (!cut) return;
+  const CurveAlongEdge curve = runs_.curve(run);
   auto chord = std::ranges::lower_bound(cut->loop_segments, run.first, {}, &CutPatch::LoopSegment::piece);
   for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord) {
     join_across(run, *cut, chord->start);
@@ -52,7 +50,7 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
             .high = {run.patch, chord->end},
             .start = chord->start,
             .end = chord->end},
-           chord->from, chord->to, segments);
+           curve, chord->from, chord->to, segments);
   }
 }
 
@@ -60,6 +58,7 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   const std::vector<Place>& side = places_of(run.patch, run.side);
   if (side.empty()) return;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
+  const CurveAlongEdge curve = runs_.curve(run);
   join_corner(runs_.edges().faces[run.face], pieces.front().start());
   join_corner(runs_.edges().faces[run.face], pieces.back().end());
   const bool along_u = runs_along_u(run.side);
@@ -69,7 +68,7 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   if (is_point) {
     const PatchVertex point{run.patch, side.front().vertex};
     for (const Place& place : side) same_.push_back({point, PatchVertex{run.patch, place.vertex}});
-    append({.run = &run, .low = point, .high = point, .start = point.vertex, .end = point.vertex},
+    append({.run = &run, .low = point, .high = point, .start = point.vertex, .end = point.vertex}, curve,
            pieces.front().range.from, pieces.back().range.to, segments);
     return;
   }
@@ -89,7 +88,7 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
             .high = vertex_at(run.patch, run.side, a, b, high),
             .start = a.vertex,
             .end = b.vertex},
-           *before, next, segments);
+           curve, *before, next, segments);
     before = next;
   }
 }
@@ -150,7 +149,7 @@ PatchVertex EdgeSegments::insert_on_side(std::uint32_t patch, Side side, std::ui
 PatchVertex EdgeSegments::insert(const EdgeSegment& segment, double s) {
   const EdgeRun& run = *segment.run;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
-  const double t = runs_.to_curve(run.face, pieces.front(), s);
+  const double t = runs_.curve(run).to_curve(s);
   const ParameterPoint at = point_at(pieces, t);
   if (run.is_side)
     return insert_on_side(run.patch, run.side, segment.start, segment.end, along_of(at, runs_along_u(run.side)));

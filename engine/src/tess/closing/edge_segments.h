@@ -72,7 +72,8 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
     run.is_side ? append_side(run, segments) : append_chords(run, segments);
   }
   /// Completes a segment between two parameters of the loop's curve.
-  void append(EdgeSegment segment, double from, double to, std::vector<EdgeSegment>& segments) const;
+  static void append(EdgeSegment segment, const CurveAlongEdge& curve, double from, double to,
+                     std::vector<EdgeSegment>& segments);
   /// The vertices of a side by growing places.
   const std::vector<Place>& places_of(std::uint32_t patch, Side side);
   /// Returns the vertex at a place from a to b; it is inserted if there is none.

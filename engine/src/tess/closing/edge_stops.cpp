@@ -30,8 +30,9 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
   std::vector<double>& stops = stops_[edge];
   for (const EdgeRun& run : runs) {
     const std::span<const TrimPiece> pieces = runs_->pieces(run);
-    stops.push_back(runs_->to_edge(run.face, pieces.front(), pieces.front().range.from));
-    stops.push_back(runs_->to_edge(run.face, pieces.front(), pieces.back().range.to));
+    const CurveAlongEdge curve = runs_->curve(run);
+    stops.push_back(curve.to_edge(pieces.front().range.from));
+    stops.push_back(curve.to_edge(pieces.back().range.to));
     if (const auto along = whole(run)) add_vertices(run, set.sources[run.patch].domain, *along, stops);
   }
   sort_distinct(stops, same);
@@ -40,8 +41,7 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
   for (const bool reversed : {false, true}) {
     found.clear();
     for (const EdgeRun& run : runs)
-      if (!is_whole(run) && runs_->coedge(run.face, runs_->pieces(run).front())->reversed == reversed)
-        divide(run, limits(run.patch), found);
+      if (!is_whole(run) && runs_->curve(run).coedge->reversed == reversed) divide(run, limits(run.patch), found);
     stops.insert(stops.end(), found.begin(), found.end());
     sort_distinct(stops, same);
   }
@@ -52,20 +52,20 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
 void EdgeStops::add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments,
                              std::vector<double>& found) const {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
+  const CurveAlongEdge curve = runs_->curve(run);
   const bool along_u = runs_along_u(run.side);
   const auto [low, high] = ends_of(pieces, along_u);
   for (int k = 0; k <= segments.rate(); ++k) {
     const double at = line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k);
-    if (at > low && at < high)
-      found.push_back(runs_->to_edge(run.face, pieces.front(), parameter_at(pieces, along_u, at)));
+    if (at > low && at < high) found.push_back(curve.to_edge(parameter_at(pieces, along_u, at)));
   }
 }
 
 void EdgeStops::divide(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found) {
   if (run.is_side) return add_segments(run, limits, found);
   lay(run, limits);
-  const TrimPiece& piece = runs_->pieces(run).front();
-  for (const double t : chords_[runs_->index(run)].parameters) found.push_back(runs_->to_edge(run.face, piece, t));
+  const CurveAlongEdge curve = runs_->curve(run);
+  for (const double t : chords_[runs_->index(run)].parameters) found.push_back(curve.to_edge(t));
 }
 
 void EdgeStops::lay(const EdgeRun& run, const ChordLimits& limits) {
@@ -78,8 +78,9 @@ void EdgeStops::lay(const EdgeRun& run, const ChordLimits& limits) {
 
 bool EdgeStops::is_laid(const EdgeRun& run, double same) const {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
-  const auto [from, to] = std::minmax({runs_->to_edge(run.face, pieces.front(), pieces.front().range.from),
-                                       runs_->to_edge(run.face, pieces.front(), pieces.back().range.to)});
+  const CurveAlongEdge curve = runs_->curve(run);
+  const auto [from, to] =
+      std::minmax({curve.to_edge(pieces.front().range.from), curve.to_edge(pieces.back().range.to)});
   const std::vector<double>& stops = stops_[run.edge];
   const auto inside = std::ranges::lower_bound(stops, to - same) - std::ranges::upper_bound(stops, from + same);
   return inside + 1 == std::ssize(chords_[runs_->index(run)].parameters);
@@ -96,15 +97,14 @@ void EdgeStops::add_segments(const EdgeRun& run, const ChordLimits& limits, std:
   const bool along_u = runs_along_u(run.side);
   const double longest = (along_u ? limits.box.u : limits.box.v) * (1 + 0x1p-40);
   const auto [low, high] = ends_of(pieces, along_u);
+  const CurveAlongEdge curve = runs_->curve(run);
   std::vector<double> places = places_on_side(run);
   places.push_back(high);
   double before = low;
   for (const double place : places) {
     const int count = static_cast<int>(std::ceil((place - before) / longest));
-    for (int k = 1; k < count; ++k) {
-      const double t = parameter_at(pieces, along_u, before + (place - before) * k / count);
-      found.push_back(runs_->to_edge(run.face, pieces.front(), t));
-    }
+    for (int k = 1; k < count; ++k)
+      found.push_back(curve.to_edge(parameter_at(pieces, along_u, before + (place - before) * k / count)));
     before = place;
   }
 }
@@ -144,18 +144,17 @@ void EdgeStops::put_on_side(std::uint32_t patch, Side side, std::vector<SidePoin
 
 ChordStops EdgeStops::list(std::uint32_t face, std::span<const TrimPiece> pieces, std::vector<double>& list) const {
   list.clear();
-  const TrimPiece& piece = pieces.front();
-  const Coedge* const coedge = runs_->coedge(face, piece);
-  if (!coedge) return {};
-  const std::vector<double>& stops = stops_[runs_->edges().faces[face].first_edge + coedge->edge];
+  const CurveAlongEdge curve = runs_->curve(face, pieces.front());
+  if (!curve.coedge) return {};
+  const std::vector<double>& stops = stops_[runs_->edges().faces[face].first_edge + curve.coedge->edge];
   const auto [from, to] =
-      std::minmax({runs_->to_edge(face, piece, piece.range.from), runs_->to_edge(face, piece, pieces.back().range.to)});
+      std::minmax({curve.to_edge(pieces.front().range.from), curve.to_edge(pieces.back().range.to)});
   auto stop = std::ranges::lower_bound(stops, from);
   if (stop != stops.begin()) --stop;
   for (; stop != stops.end() && (*stop <= to || stop == stops.begin() || *(stop - 1) <= to); ++stop)
-    list.push_back(runs_->to_curve(face, piece, *stop));
+    list.push_back(curve.to_curve(*stop));
   if (list.size() > 1 && list.front() > list.back()) std::ranges::reverse(list);
-  const Interval& range = (*runs_->edges().faces[face].loops)[piece.loop].curves[piece.curve_index].domain();
+  const Interval& range = curve.curve->domain();
   return {list, same_share_ * (range.to - range.from)};
 }
 
