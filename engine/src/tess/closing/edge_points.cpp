@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -44,7 +43,7 @@ class Maker {
       if (stops_.empty() || !(stops_.back() == low)) stops_.push_back(low);
       stops_.push_back({segment.to, segment.high, segment.run->use});
     }
-    sort_stops();
+    std::ranges::sort(stops_, {}, &Stop::s);
     find_places(same, least_same_share * (edge.range.to - edge.range.from));
     if (segments_.front().run->use != segments_.back().run->use) insert_missing();
     for (const EdgeSegment& segment : segments_)
@@ -80,22 +79,19 @@ class Maker {
            !(run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]);
   }
 
-  void sort_stops() {
-    std::ranges::sort(stops_, [](const Stop& a, const Stop& b) {
-      return std::tuple(a.s, a.vertex.patch, a.vertex.vertex) < std::tuple(b.s, b.vertex.patch, b.vertex.vertex);
-    });
-  }
-
   /// Inserts vertices at the places that lie strictly inside a segment.
   void insert_missing() {
     const std::size_t before = stops_.size();
+    std::uint32_t use = no_id;
+    auto after = places_.begin();  // the first place after the segment's lower end
     for (const EdgeSegment& segment : segments_) {
+      if (segment.run->use != use) use = segment.run->use, after = places_.begin();
+      while (after != places_.end() && after->from <= segment.from) ++after;
       const bool is_point = segment.start == segment.end;
-      auto at = std::ranges::upper_bound(places_, segment.from, {}, &Interval::from);
-      for (; at != places_.end() && at->to < segment.to; ++at)
-        stops_.push_back({at->from, is_point ? segment.low : all_.insert(segment, at->from), segment.run->use});
+      for (auto at = after; at != places_.end() && at->to < segment.to; ++at)
+        stops_.push_back({at->from, is_point ? segment.low : all_.insert(segment, at->from), use});
     }
-    if (stops_.size() > before) sort_stops();
+    if (stops_.size() > before) std::ranges::sort(stops_, {}, &Stop::s);
   }
 
   void put(std::uint32_t id, const PatchEdges::Edge& edge, double same) {
