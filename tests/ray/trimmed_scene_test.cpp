@@ -9,17 +9,19 @@
 #include "tess_trim/closed_shape.h"
 #include "tess_trim/trimmed_face.h"
 #include "tessera/edge_matching.h"
+#include "tessera/ray_embree.h"
 #include "tessera/trim_region.h"
 
 namespace tessera::test {
 namespace {
 
-/// The hits of all kinds of queries of a scene, beside those that a referee keeps of the whole surface's.
-void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t seed) {
+/// The hits of all kinds of queries of a scene, beside those that a referee keeps of the whole surface's. Rays are aimed
+/// at the whole surface's box, or at a part of it.
+void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t seed, const Box3& aim = {}) {
   const PatchSet whole_set = value_of(make_patch_set(face.model, {.trims = false}));
   const RayScene whole = value_of(RayScene::make(whole_set)), scene = value_of(RayScene::make(face.set, options));
   const TrimRegion region = value_of(TrimRegion::make(*face.model.surfaces[0].trims, face.grid));
-  const std::vector<Ray> rays = rays_through(whole_set.box(), 4000, seed);
+  const std::vector<Ray> rays = rays_through(aim.empty() ? whole_set.box() : aim, 4000, seed);
   HitLists all_of_whole, lists;
   ASSERT_TRUE(whole.all(rays, all_of_whole).ok());
   ASSERT_TRUE(scene.all(rays, lists).ok());
@@ -50,8 +52,8 @@ void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t
     EXPECT_NEAR(hits[k].t, expected[0].t, 1e-9) << k;
     EXPECT_EQ(alone.t, hits[k].t) << k;
   }
-  EXPECT_GT(kept, rays.size() / 20);
-  EXPECT_GT(cut_away, rays.size() / 20);
+  EXPECT_GT(kept, rays.size() / 100);
+  EXPECT_GT(cut_away, rays.size() / 100);
 }
 
 std::vector<TrimLoop> outline_with_holes() {
@@ -65,6 +67,84 @@ TEST(TrimmedScene, HoldsWhatLoopsKeep) {
     expect_kept(Face(wavy(), outline_with_holes()), {.pieces = pieces}, 2);
     expect_kept(Face(cylinder(), outline_with_holes()), {.pieces = pieces}, 3);
   }
+}
+
+/// The box of a surface's points whose parameters a loop of circles or polygons holds in its hull.
+Box3 box_of_loops(const Face& face) {
+  Box3 box;
+  Domain hull{1e9, -1e9, 1e9, -1e9};
+  for (const TrimLoop& loop : *face.model.surfaces[0].trims)
+    for (const Curve& curve : loop.curves)
+      for (const Vec3& p : curve.points())
+        hull = {std::min(hull.u0, p.x), std::max(hull.u1, p.x), std::min(hull.v0, p.y), std::max(hull.v1, p.y)};
+  for (int i = 0; i <= 50; ++i)
+    for (int j = 0; j <= 50; ++j)
+      box.extend(
+          value_of(evaluate_jet(face.model.surfaces[0].surface, hull.u_at(i / 50.0), hull.v_at(j / 50.0))).position);
+  return box;
+}
+
+// Leaves shrink to the kept part of a surface, however small, wherever it lies, and no hit is lost by that.
+TEST(TrimmedScene, BoxesShrinkToWhatLoopsKeep) {
+  const std::vector<std::vector<TrimLoop>> small = {{circle_loop(0.9, 0.8, 0.3, false)},
+                                                    {polygon({{2.5, 1.9, 0}, {2.9, 2.1, 0}, {2.4, 2.6, 0}})},
+                                                    {circle_loop(3.2, 2.3, 0.02, false)},
+                                                    {polygon({{0.2, 0.8, 0}, {3.1, 2.2, 0}, {0.2, 0.86, 0}})},
+                                                    {polygon({{0, 0, 0}, {0.3, 0, 0}, {0, 0.2, 0}})}};
+  std::uint64_t seed = 20;
+  for (const std::vector<TrimLoop>& loops : small) {
+    for (const BSplineSurface& surface : {plane(), wavy(), cylinder()}) {
+      const Face face(surface, loops);
+      const Box3 kept = box_of_loops(face);
+      for (const int pieces : {1, 4}) {
+        const RayScene scene = value_of(RayScene::make(face.set, RaySceneOptions{.pieces = pieces}));
+        EXPECT_LT(scene.box().diagonal(), 1.3 * kept.diagonal());
+        EXPECT_LT(length(scene.box().centre() - kept.centre()), 0.3 * kept.diagonal());
+        expect_kept(face, {.pieces = pieces}, ++seed, kept);
+      }
+    }
+  }
+}
+
+// Where only a corner is cut away, or a hole far from it, all the rest stays.
+TEST(TrimmedScene, CornersThatLoopsKeepAreNotCutOff) {
+  for (const BSplineSurface& surface : {plane(), wavy(), cylinder()}) {
+    for (const TrimLoop& loop : {circle_loop(0.8, 0.6, 0.5, true), circle_loop(3.4, 2.5, 0.45, true)}) {
+      const Face face(surface, {loop});
+      expect_kept(face, {}, 60);
+      expect_kept(face, {.pieces = 4}, 61);
+    }
+  }
+}
+
+// A ray far from what is kept looks at no piece, also after a refit, and in the user's own Embree scene.
+TEST(TrimmedScene, RaysBesideTheKeptPartLookAtNothing) {
+  Face face(plane(), {circle_loop(3.2, 2.3, 0.02, false)});
+  RayScene scene = value_of(RayScene::make(face.set, RaySceneOptions{.editable = true}));
+  const auto look = [&](double x, double y, double z) { return scene.closest(ray({x, y, 9}, {0.01, 0, z - 9})); };
+  EXPECT_EQ(look(1, 1, 1).steps, 0);
+  EXPECT_EQ(look(3.2, 2.3, 1).kind, HitKind::hit);
+  std::vector<Vec3> points(face.set.patch(0).points().begin(), face.set.patch(0).points().end());
+  for (Vec3& p : points) p = {0.5 * p.x, 0.5 * p.y, p.z + 1};
+  ASSERT_TRUE(face.set.set_control_points(0, points).ok());
+  ASSERT_TRUE(scene.refit().ok());
+  EXPECT_NEAR(length(scene.box().centre() - Vec3{1.6, 1.15, 2}), 0, 0.005);
+  EXPECT_LT(scene.box().diagonal(), 0.04);
+  EXPECT_EQ(look(1.6, 1.15, 2).kind, HitKind::hit);
+  EXPECT_EQ(look(3.2, 2.3, 1).steps, 0);
+  EXPECT_EQ(look(0.9, 0.9, 2).steps, 0);
+
+  const RTCDevice device = rtcNewDevice(nullptr);
+  const RTCScene world = rtcNewScene(device);
+  rtcSetSceneFlags(world, RTC_SCENE_FLAG_ROBUST);
+  ASSERT_TRUE(attach(scene, world));
+  rtcCommitScene(world);
+  RTCBounds bounds;
+  rtcGetSceneBounds(world, &bounds);
+  EXPECT_NEAR(bounds.lower_x, 1.6, 0.02);
+  EXPECT_NEAR(bounds.upper_y, 1.15, 0.02);
+  rtcReleaseScene(world);
+  rtcReleaseDevice(device);
 }
 
 TEST(TrimmedScene, AsksFiltersAboutKeptRootsAlone) {

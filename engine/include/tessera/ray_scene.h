@@ -287,7 +287,7 @@ class RayScene {
   /// unsupported (instances; grid mode).
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
 
-  /// Returns the box of the facets or of the pieces' nets, tighter than that of all control points; empty while stale.
+  /// Returns the box of the facets, or of what loops keep of the pieces' nets; empty while stale.
   Box3 box() const;
   std::uint64_t revision() const;  ///< the set's, when the scene was made or last refitted
   /// Returns the bytes of grids or nets, and BVH; for instances without those of their scenes.

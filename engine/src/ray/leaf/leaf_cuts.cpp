@@ -167,6 +167,19 @@ void PatchCutter::cut(const Cuts& cuts) {
   while (cuts_.v < cuts.v) halve(false);
 }
 
+const double* PatchCutter::part_of(std::size_t piece, const Domain& rectangle) {
+  const double columns = std::ldexp(1.0, cuts_.v), rows = std::ldexp(1.0, cuts_.u);
+  const auto row = static_cast<double>(piece >> cuts_.v);
+  const auto column = static_cast<double>(piece & ((std::size_t{1} << cuts_.v) - 1));
+  const NetShape<0, 0> shape{patch_->degree_u(), patch_->degree_v()};
+  const int components = patch_->is_rational() ? 4 : 3;
+  part_.assign(net(piece), net(piece) + values());
+  restrict_net(shape, components, part_.data(), true, rectangle.u0 * rows - row, rectangle.u1 * rows - row);
+  restrict_net(shape, components, part_.data(), false, rectangle.v0 * columns - column,
+               rectangle.v1 * columns - column);
+  return part_.data();
+}
+
 /// Returns whether more than one piece in ten bends by more than `max_bend`, and along which parameter.
 bool PatchCutter::bends(double max_bend, bool& along_u) const {
   alignas(kernel::RayLeaf) std::byte room[kernel::ray_leaf_bytes(true)];

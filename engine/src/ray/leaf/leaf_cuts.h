@@ -38,6 +38,8 @@ class PatchCutter {
 
   /// Returns the net of piece `across * 2^cuts.v + along`; the next one follows after `values()`.
   const double* net(std::size_t piece) const { return nets_.data() + piece * values(); }
+  /// Returns the net of a rectangle within that piece, in the patch's parameters, until the next call.
+  const double* part_of(std::size_t piece, const Domain& rectangle);
   std::size_t values() const { return patch_->points().size() * (patch_->is_rational() ? 4 : 3); }
 
  private:
@@ -47,7 +49,7 @@ class PatchCutter {
   const SceneFrame* frame_;
   const BezierPatch* patch_ = nullptr;
   Cuts cuts_;
-  std::vector<double> nets_, halves_;
+  std::vector<double> nets_, halves_, part_;
 };
 
 }  // namespace tessera::inline abi_0_1

@@ -19,12 +19,13 @@ namespace tessera::inline abi_0_1 {
 /// Steps of Newton's method, in a patch's parameters, up to which the surface equals its tangent plane within rounding.
 constexpr double linear_step = 1e-9;
 
-/// A piece [u0, u0 + du] x [v0, v0 + dv] of a patch.
+/// A piece [u0, u0 + du] x [v0, v0 + dv] of a patch. The sums are exact.
 struct Leaf {
   std::uint32_t patch = 0;
   std::uint8_t degree_u = 0, degree_v = 0;
   bool rational = false;
-  std::uint8_t halvings_u = 0, halvings_v = 0;     ///< from the patch to the piece
+  bool is_shrunk = false;                          ///< a part of what halvings give: see leaf_trims.h
+  std::uint8_t halvings_u = 0, halvings_v = 0;     ///< from the patch to the piece, or to what it is a part of
   float linear = static_cast<float>(linear_step);  ///< linear_step, or less where weights differ
   double u0 = 0, v0 = 0, du = 1, dv = 1;
   const Vec3* points = nullptr;  ///< of the patch when the piece was made: only for prefetching
@@ -42,15 +43,20 @@ struct Flatness {
   double max_bend = 1;  ///< see PatchCutter::flatten
 };
 
+struct Cuts;
 class PatchCutter;
 
 class LeafNets {
  public:
-  /// Cuts every patch by itself, so that the pieces are nearly flat and roughly square. Errors: cancelled,
-  /// out_of_memory.
-  Status build(const SetView& set, const SceneFrame& frame, const Flatness& flatness, const Execution& execution);
+  /// Cuts every patch by itself, so that the pieces are nearly flat and roughly square. Only leaves() may then be
+  /// used, until make(). Errors: cancelled, out_of_memory.
+  Status plan(const SetView& set, const SceneFrame& frame, const Flatness& flatness, const Execution& execution);
+  /// The leaves before make(), which may be shrunk.
+  std::span<Leaf> planned() { return leaves_; }
+  /// Makes the pieces and their boxes. Errors: as above.
+  Status make(const SetView& set, const Execution& execution);
   /// Makes the pieces of these patches again, with their boxes, which must not have been dropped. The cuts stay those
-  /// of build(), however the patches bend now. After an error some pieces are not updated. Errors: cancelled,
+  /// of plan(), however the patches bend now. After an error some pieces are not updated. Errors: cancelled,
   /// out_of_memory.
   Status update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution);
 
@@ -74,10 +80,9 @@ class LeafNets {
   }
 
  private:
-  struct Plan;
-  Result<std::vector<Plan>> plan(const SetView& set, const Flatness& flatness, const Execution& execution);
-  Plan plan_of(std::uint32_t patch) const;
-  void cut(const BezierPatch& patch, std::uint32_t index, const Plan& plan, PatchCutter& cutter);
+  std::size_t first_leaf(std::uint32_t patch) const;
+  void set_leaves(const BezierPatch& patch, std::uint32_t index, const Cuts& cuts, std::size_t first);
+  void cut(const BezierPatch& patch, std::uint32_t index, PatchCutter& cutter);
 
   SceneFrame frame_;
   std::vector<Leaf> leaves_;

@@ -1,32 +1,66 @@
 #include "ray/leaf/leaf_trims.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "parallel/parallel_for.h"
+#include "ray/leaf/kept_part.h"
 #include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t leaves_per_task = 64;
+constexpr double shares = 1024;          // of a leaf's side; a leaf shrinks to a few of them
+constexpr int max_shrinks = 2;           // each to 1/1024 of a side at most: the ends stay exact numbers
+constexpr double max_needle = 16;        // by which a shrunk leaf may be longer along one side than the leaf was
+constexpr double worth_shrinking = 0.8;  // share of the area
+
+/// A leaf's side along u or v, in the patch's parameter.
+struct LeafSide {
+  double start, width;
+};
 
 /// A leaf's rectangle in the parameters of its surface.
 Domain rectangle_of(const Domain& patch, const Leaf& leaf) {
   return {patch.u_at(leaf.u0), patch.u_at(leaf.u0 + leaf.du), patch.v_at(leaf.v0), patch.v_at(leaf.v0 + leaf.dv)};
 }
 
-/// Whether a piece may pass through a rectangle: by its box, and what it may be off.
-bool may_meet(const TrimPiece& piece, const Domain& box) {
-  const ParameterPoint off = {2 * piece.error.u + 1e-9 * (box.u1 - box.u0),
-                              2 * piece.error.v + 1e-9 * (box.v1 - box.v0)};
-  return piece.lower_u() - off.u <= box.u1 && piece.upper_u() + off.u >= box.u0 && piece.lower_v() - off.v <= box.v1 &&
-         piece.upper_v() + off.v >= box.v0;
+/// Returns a part of a leaf's side that holds a range of the patch's parameter, with a margin of a quarter of a share. Its
+/// ends are even shares of the side, so that no sum rounds.
+LeafSide shrunk(const LeafSide& side, double from, double to) {
+  const auto share = [&](double x) { return shares * ((x - side.start) / side.width); };
+  const double lower = std::clamp(std::floor(share(from) - 0.25), 0.0, shares - 1);
+  const double upper = std::clamp(std::ceil(share(to) + 0.25), lower + 1, shares);
+  return {side.start + lower / shares * side.width, (upper - lower) / shares * side.width};
+}
+
+/// Returns a side that is at least `width` wide, within the side that it is a part of.
+LeafSide widened(LeafSide side, double width, const LeafSide& within) {
+  while (side.width < width) {
+    side.start = std::max(side.start - side.width, within.start);
+    side.width = std::min(4 * side.width, within.start + within.width - side.start);
+  }
+  return side;
+}
+
+/// Shrinks a leaf to what is kept of it, but not to a needle. Returns whether that pays.
+bool shrink(Leaf& leaf, const Domain& patch, const Domain& kept) {
+  const LeafSide along_u{leaf.u0, leaf.du}, along_v{leaf.v0, leaf.dv};
+  LeafSide u = shrunk(along_u, patch.local_u(kept.u0), patch.local_u(kept.u1));
+  LeafSide v = shrunk(along_v, patch.local_v(kept.v0), patch.local_v(kept.v1));
+  u = widened(u, v.width / leaf.dv * leaf.du / max_needle, along_u);
+  v = widened(v, u.width / leaf.du * leaf.dv / max_needle, along_v);
+  if (u.width * v.width > worth_shrinking * leaf.du * leaf.dv) return false;
+  leaf.u0 = u.start, leaf.du = u.width, leaf.v0 = v.start, leaf.dv = v.width;
+  leaf.is_shrunk = true;
+  return true;
 }
 
 }  // namespace
 
-Status LeafTrims::build(const SetView& set, std::span<const Leaf> leaves, const Execution& execution) {
+Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execution& execution) {
   set_ = &set.impl();
   trims_ = set.impl().trims;
   if (!trims_) return {};
@@ -47,23 +81,17 @@ Status LeafTrims::build(const SetView& set, std::span<const Leaf> leaves, const 
   return parallel_for(leaves.size(), leaves_per_task, quiet, find_uses);
 }
 
-std::uint8_t LeafTrims::use_of(const SetView& set, const Leaf& leaf) const {
+std::uint8_t LeafTrims::use_of(const SetView& set, Leaf& leaf) const {
   const auto number = [](PatchUse use) { return static_cast<std::uint8_t>(use); };
   if (!trims_->is_cut[leaf.patch]) return number(PatchUse::whole);
   const TrimRegion& region = regions_[regions_of_[leaf.patch]];
-  const TrimRegion::Impl& impl = impl_of(region);
   const auto cut = std::ranges::lower_bound(trims_->cuts, leaf.patch, {}, &PatchTrims::Cut::patch);
-  const Domain box = rectangle_of(set.source(leaf.patch).domain, leaf);
-  for (const std::uint32_t piece : impl.pieces_of(cut->place))
-    if (may_meet(impl.pieces[piece], box)) return number(PatchUse::cut);
-  switch (region.locate((box.u0 + box.u1) / 2, (box.v0 + box.v1) / 2)) {
-    case TrimSide::inside:
-      return number(PatchUse::whole);
-    case TrimSide::outside:
-      return number(PatchUse::out);
-    default:
-      return number(PatchUse::cut);
-  }
+  const std::span<const std::uint32_t> pieces = impl_of(region).pieces_of(cut->place);
+  const Domain& patch = set.source(leaf.patch).domain;
+  KeptPart kept = kept_part(region, pieces, rectangle_of(patch, leaf));
+  for (int k = 0; k < max_shrinks && kept.use == PatchUse::cut && shrink(leaf, patch, kept.hull); ++k)
+    kept = kept_part(region, pieces, rectangle_of(patch, leaf));
+  return number(kept.use);
 }
 
 // The root may lie anywhere in a rectangle about it. A loop that passes through has corners on both sides of it, unless

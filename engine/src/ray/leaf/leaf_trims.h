@@ -1,6 +1,6 @@
 #pragma once
-// The trims of a ray scene's leaves: which leaves the loops of their faces leave out or cut, and whether roots in cut
-// ones are kept.
+// The trims of a ray scene's leaves: which leaves the loops of their faces leave out or cut, what they keep of these,
+// and whether roots there are kept.
 
 #include <cstdint>
 #include <memory>
@@ -18,9 +18,9 @@ namespace tessera::inline abi_0_1 {
 /// Const calls from any number of threads.
 class LeafTrims final : public RootSides {
  public:
-  /// Finds the uses of all leaves. `set`: as the leaves were made from; its patches may be edited, its loops not.
-  /// Errors: cancelled, out_of_memory.
-  Status build(const SetView& set, std::span<const Leaf> leaves, const Execution& execution);
+  /// Finds the uses of all leaves, and shrinks cut ones to what loops keep of them. `set`: that of the leaves; its
+  /// patches may be edited, its loops not. Errors: cancelled, out_of_memory.
+  Status build(const SetView& set, std::span<Leaf> leaves, const Execution& execution);
   /// Whether any patch is cut; otherwise no other call is allowed.
   bool any() const { return trims_ != nullptr; }
   PatchUse use(std::size_t leaf) const { return static_cast<PatchUse>(uses_[leaf]); }
@@ -29,7 +29,7 @@ class LeafTrims final : public RootSides {
   std::size_t memory_bytes() const { return uses_.capacity() + regions_of_.capacity() * sizeof(std::uint32_t); }
 
  private:
-  std::uint8_t use_of(const SetView& set, const Leaf& leaf) const;
+  std::uint8_t use_of(const SetView& set, Leaf& leaf) const;
 
   std::shared_ptr<const PatchTrims> trims_;
   const PatchSet::Impl* set_ = nullptr;

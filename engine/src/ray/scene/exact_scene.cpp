@@ -154,10 +154,11 @@ Status ExactScene::build(const Execution& execution) {
   frame_ = SceneFrame::around(*box);
   updates_ = 0;
   adjacency_.forget();
-  if (Status status = nets_.build(set(), frame_, flatness(), execution); !status.ok()) return status;
+  if (Status status = nets_.plan(set(), frame_, flatness(), execution); !status.ok()) return status;
   if (nets_.leaves().size() > max_leaves)
     return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
-  if (Status status = trims_.build(set(), nets_.leaves(), execution); !status.ok()) return status;
+  if (Status status = trims_.build(set(), nets_.planned(), execution); !status.ok()) return status;
+  if (Status status = nets_.make(set(), execution); !status.ok()) return status;
   const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure(), trims_.any() ? &trims_ : nullptr};
   if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
   if (!follows_) nets_.drop_boxes();

@@ -25,6 +25,10 @@ const ExactSource& source_of(void* user_data) { return *static_cast<const ExactS
 /// Returns the box of a leaf in the model's coordinates, with all points that count as hit and every rounding.
 void bounds(const RTCBoundsFunctionArguments* arguments) {
   const LeafTracer& tracer = source_of(arguments->geometryUserPtr).tracer();
+  if (tracer.use_of(arguments->primID) == PatchUse::out) {
+    *arguments->bounds_o = {infinity, infinity, infinity, 0, -infinity, -infinity, -infinity, 0};
+    return;
+  }
   const SceneFrame& frame = tracer.nets->frame();
   Vec3 low{-1, -1, -1}, high{1, 1, 1};  // holds every leaf
   try {
