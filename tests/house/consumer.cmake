@@ -155,6 +155,13 @@ function(build_by_pkg_config prefix)
     run(${COMPILER} -std=c++20 ${SOURCE}/tests/consumer/${program}.cpp -o ${WORK}/pkg_config/${program} ${flags})
     run_in(pkg_config ${program})
   endforeach()
+  if(EXISTS ${folder}/tessera-c.pc)
+    execute_process(COMMAND ${PKG_CONFIG} --cflags --libs tessera-c OUTPUT_VARIABLE flags
+      OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    separate_arguments(flags UNIX_COMMAND "${flags}")
+    run(cc -std=c99 ${SOURCE}/tests/c/program.c ${SOURCE}/tests/c/layout.c -o ${WORK}/pkg_config/program ${flags} -lm)
+    run_in(pkg_config program)
+  endif()
   unset(ENV{LD_LIBRARY_PATH})
 endfunction()
 
@@ -172,7 +179,7 @@ if(WAY STREQUAL "package")
   check_cad_reader(${prefix})
   if(PYTHON)
     foreach(guide README engine/docs/tessellation-backend engine/docs/ray-hits engine/docs/renderer
-        engine/docs/tracking-speed)
+        engine/docs/tracking-speed engine/docs/c)
       get_filename_component(folder ${guide} NAME)
       run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/${guide}.md ${WORK}/${folder} ${prefix} ${CMAKE_COMMAND}
         ${GENERATOR} ${COMPILER})

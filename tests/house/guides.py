@@ -33,7 +33,7 @@ def main():
             outputs[name] = STATUS[language], content
             continue
         # Messages of the compiler name the guide's own lines.
-        mark = f'#line {line + 1} "{guide}"\n' if language == 'cpp' else ''
+        mark = f'#line {line + 1} "{guide}"\n' if language in ('c', 'cpp') else ''
         places[name] = places.get(name, '') + mark + content
     if not outputs or 'CMakeLists.txt' not in places:
         sys.exit(f'{guide} has no project, or no program that prints anything')
@@ -41,7 +41,7 @@ def main():
         (folder / name).write_text(content, encoding='utf-8')
     subprocess.run([cmake, '-S', folder, '-B', folder / 'build', '-G', generator, f'-DCMAKE_PREFIX_PATH={prefix}',
                     '-DCMAKE_BUILD_TYPE=Release', f'-DCMAKE_CXX_COMPILER={compiler}',
-                    '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror'], check=True)
+                    '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror', '-DCMAKE_C_FLAGS=-Wall -Wextra -Werror'], check=True)
     subprocess.run([cmake, '--build', folder / 'build'], check=True)
     wrong = 0
     for command, (status, expected) in outputs.items():
