@@ -206,6 +206,7 @@ void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uin
 }
 
 void EdgeSegments::join_corner(const PatchEdges::Face& face, const ParameterPoint& at) {
+  if (face.patches.size() == 1) return;
   const TrimRegion::Impl& region = impl_of(face.region);
   const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
   const auto i = std::ranges::lower_bound(u, at.u) - u.begin(), j = std::ranges::lower_bound(v, at.v) - v.begin();
