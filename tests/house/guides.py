@@ -2,8 +2,9 @@
 """Follows the guides as a newcomer would: guides.py GUIDE.md FOLDER PREFIX CMAKE GENERATOR COMPILER [--print].
 
 A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project
-is built against the package installed in PREFIX. An ```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and
-its exit status 0; with ```failure instead of ```output the status must be 1. --print shows what it prints instead.
+is built against the package installed in PREFIX; a block of Rust is a program of its own, tried where rustc is. An
+```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and its exit status 0; with ```failure instead of
+```output the status must be 1. --print shows what it prints instead.
 """
 
 import pathlib
@@ -43,6 +44,17 @@ def main():
                     '-DCMAKE_BUILD_TYPE=Release', f'-DCMAKE_CXX_COMPILER={compiler}',
                     '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror', '-DCMAKE_C_FLAGS=-Wall -Wextra -Werror'], check=True)
     subprocess.run([cmake, '--build', folder / 'build'], check=True)
+    for name in places:
+        if not name.endswith('.rs'):
+            continue
+        program = name.removesuffix('.rs')
+        if not shutil.which('rustc'):
+            print(f'{guide}: {name} is not tried, there is no rustc')
+            outputs.pop(program)
+            continue
+        library = next(pathlib.Path(prefix).resolve().glob('lib*/**/libtessera_c.so')).parent
+        subprocess.run(['rustc', '-O', folder / name, '-o', folder / 'build' / program, '-L', f'native={library}', '-l',
+                        'tessera_c', '-C', f'link-arg=-Wl,-rpath,{library}'], check=True)
     wrong = 0
     for command, (status, expected) in outputs.items():
         program, *arguments = command.split()
