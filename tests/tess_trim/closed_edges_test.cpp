@@ -22,7 +22,7 @@ TEST(ClosedEdges, AreNotMadeOnceTheCallIsCancelled) {
   const std::vector<std::uint8_t> is_joined(4 * divisions.size(), 0);
   const auto close = [&](const std::atomic<bool>* cancel) {
     return close_edges(
-        impl, runs, divisions, {}, 1, 1e-9, is_joined, [](std::uint32_t) { return ChordBound(); }, cancel);
+        impl, runs, divisions, {}, nullptr, 1, 1e-9, is_joined, [](std::uint32_t) { return ChordBound(); }, cancel);
   };
   std::atomic<bool> cancel = false;
   for (const Result<ClosedEdges>& made : {close(nullptr), close(&cancel)}) {

@@ -16,13 +16,13 @@ namespace {
 class Closer {
  public:
   Closer(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions, std::span<CutPatch> cuts,
-         FunctionRef<ChordBound(std::uint32_t)> chord, const std::atomic<bool>* cancel)
+         const EdgeStops* stops, FunctionRef<ChordBound(std::uint32_t)> chord, const std::atomic<bool>* cancel)
       : cancel_(cancel),
         set_(set),
         chord_(chord),
         divisions_(divisions),
         cuts_(cuts),
-        segments_(set, runs, divisions, cuts),
+        segments_(set, runs, divisions, cuts, stops),
         runs_(runs) {}
 
   Result<ClosedEdges> run(double max_gap, double same_share, std::span<const std::uint8_t> is_joined) {
@@ -278,10 +278,10 @@ class Closer {
 }  // namespace
 
 Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                                std::span<CutPatch> cuts, double max_gap, double same_share,
+                                std::span<CutPatch> cuts, const EdgeStops* stops, double max_gap, double same_share,
                                 std::span<const std::uint8_t> is_joined, FunctionRef<ChordBound(std::uint32_t)> chord,
                                 const std::atomic<bool>* cancel) {
-  return Closer(set, runs, divisions, cuts, chord, cancel).run(max_gap, same_share, is_joined);
+  return Closer(set, runs, divisions, cuts, stops, chord, cancel).run(max_gap, same_share, is_joined);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -39,10 +39,11 @@ struct ClosedEdges {
 /// Finds the vertices of all edges, and inserts those that patches lack: into `cuts`, and as edits into others.
 /// Distances of cut patches are extended to their new triangles, by `chord` of the patch. Edges with gaps above
 /// `max_gap` stay open. Parameters within `same_share` of an edge's range count as one. `is_joined`: by 4 * patch +
-/// side, whether triangles of another patch have the same border anyway. `cancel`: looked at for each edge and each
+/// side, whether triangles of another patch have the same border anyway. `stops`: those that `cuts` were made by; null
+/// if there are none. `cancel`: looked at for each edge and each
 /// patch, unless null; then `cuts` may be divided in part. Errors: cancelled.
 Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                                std::span<CutPatch> cuts, double max_gap, double same_share,
+                                std::span<CutPatch> cuts, const EdgeStops* stops, double max_gap, double same_share,
                                 std::span<const std::uint8_t> is_joined,
                                 FunctionRef<ChordBound(std::uint32_t patch)> chord, const std::atomic<bool>* cancel);
 

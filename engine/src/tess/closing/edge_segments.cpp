@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "base/impl_access.h"
-#include "tess/trimmed/patch_sides.h"
 #include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
 
 EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                           std::span<const CutPatch> cuts)
-    : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts) {}
+                           std::span<const CutPatch> cuts, const EdgeStops* stops)
+    : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts), stops_(stops) {}
 
 void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) {
   const std::span<const EdgeRun> runs = runs_.of(edge);
@@ -55,19 +55,19 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
 }
 
 void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
-  const std::vector<Place>& side = places_of(run.patch, run.side);
+  const CutPatch* const cut = cut_of(run.patch);
+  const SideVertices side = vertices_of(run.patch, run.side);
   if (side.empty()) return;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
   const CurveAlongEdge curve = runs_.curve(run);
   join_corner(runs_.edges().faces[run.face], pieces.front().start());
   join_corner(runs_.edges().faces[run.face], pieces.back().end());
   const bool along_u = runs_along_u(run.side);
-  const CutPatch* const cut = cut_of(run.patch);
   const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != CutPatch::none
                             : divisions_[run.patch].collapsed.has(edge_of(run.side));
   if (is_point) {
-    const PatchVertex point{run.patch, side.front().vertex};
-    for (const Place& place : side) same_.push_back({point, PatchVertex{run.patch, place.vertex}});
+    const PatchVertex point{run.patch, side[0].vertex};
+    for (std::size_t k = 0; k < side.size(); ++k) same_.push_back({point, PatchVertex{run.patch, side[k].vertex}});
     append({.run = &run, .low = point, .high = point, .start = point.vertex, .end = point.vertex}, curve,
            pieces.front().range.from, pieces.back().range.to, segments);
     return;
@@ -75,50 +75,30 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   const auto [from, to] =
       std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
   std::optional<double> before;  // the parameter where the last segment ends
-  const auto first = std::ranges::upper_bound(side, from, {}, &Place::along);
-  for (auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(first - side.begin() - 1, 0));
-       k + 1 < side.size() && side[k].along < to; ++k) {
-    const Place &a = side[k], &b = side[k + 1];
-    const double low = std::max(a.along, from), high = std::min(b.along, to);
+  std::span<const double> inside;
+  if (stops_ && run.edge != no_id) inside = stops_->at_vertices(run);
+  std::size_t k = std::max<std::size_t>(side.count_up_to(from), 1);
+  for (Place end = side[k - 1]; k < side.size() && end.along < to; ++k) {
+    const Place start = std::exchange(end, side[k]);
+    const double low = std::max(start.along, from), high = std::min(end.along, to);
     if (!(low < high)) continue;
     if (!before) before = parameter_at(pieces, along_u, low);
-    const double next = parameter_at(pieces, along_u, high);
+    const bool is_known = end.along < to && !inside.empty();
+    const double next = is_known ? inside.front() : parameter_at(pieces, along_u, high);
+    if (is_known) inside = inside.subspan(1);
     append({.run = &run,
-            .low = vertex_at(run.patch, run.side, a, b, low),
-            .high = vertex_at(run.patch, run.side, a, b, high),
-            .start = a.vertex,
-            .end = b.vertex},
+            .low = vertex_at(run.patch, run.side, start, end, low),
+            .high = vertex_at(run.patch, run.side, start, end, high),
+            .start = start.vertex,
+            .end = end.vertex},
            curve, *before, next, segments);
     before = next;
   }
 }
 
-std::uint32_t EdgeSegments::ring_vertex(std::uint32_t patch, std::size_t side, int k) const {
-  const Division& division = divisions_[patch];
-  std::uint32_t start = 0;
-  for (std::size_t before = 0; before < side; ++before)
-    start += static_cast<std::uint32_t>(division.border[before].rate());
-  const std::uint32_t at = start + static_cast<std::uint32_t>(k);
-  return static_cast<std::uint32_t>(division.inner_count()) + (at == division.ring_count() ? 0 : at);
-}
-
-const std::vector<EdgeSegments::Place>& EdgeSegments::places_of(std::uint32_t patch, Side side) {
-  const auto [known, is_new] = sides_.try_emplace(4 * std::uint64_t{patch} + static_cast<std::uint64_t>(side));
-  std::vector<Place>& places = known->second;
-  if (!is_new) return places;
-  if (const CutPatch* const cut = cut_of(patch)) {
-    const auto of_side = std::ranges::equal_range(cut->side_vertices, side, {}, &CutPatch::SideVertex::side);
-    for (const CutPatch::SideVertex& vertex : of_side) places.push_back({vertex.along, vertex.vertex});
-    return places;
-  }
-  if (divisions_[patch].empty) return places;
-  const Domain domain = set_.sources[patch].domain;
-  const bool along_u = runs_along_u(side);
-  const Segments segments = divisions_[patch].border[static_cast<std::size_t>(side)];
-  for (int k = 0; k <= segments.rate(); ++k)
-    places.push_back({line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k),
-                      ring_vertex(patch, static_cast<std::size_t>(side), is_backward(side) ? segments.rate() - k : k)});
-  return places;
+SideVertices EdgeSegments::vertices_of(std::uint32_t patch, Side side) const {
+  if (const CutPatch* const cut = cut_of(patch)) return {*cut, side};
+  return {divisions_[patch], set_.sources[patch].domain, side};
 }
 
 PatchVertex EdgeSegments::vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along) {
@@ -172,7 +152,8 @@ std::optional<std::uint32_t> EdgeSegments::corner_vertex(std::uint32_t patch, bo
     return {};
   }
   if (divisions_[patch].empty) return {};
-  return ring_vertex(patch, end_v ? (end_u ? 2 : 3) : (end_u ? 1 : 0), 0);
+  const SideVertices side = vertices_of(patch, end_v ? Side::v1 : Side::v0);
+  return side[end_u ? side.size() - 1 : 0].vertex;
 }
 
 // A neighbour often has the vertex in a run of its own, but not where the loop leaves the patch along a line that closes
@@ -196,13 +177,13 @@ void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uin
     before ? --b : ++b;
   if (a + 1 == region.lines.u.lines.size() || b == region.count_v()) return;
   const std::uint32_t other = face.patches[a * region.count_v() + b];
-  const std::vector<Place>& own = places_of(run.patch, side);
-  const auto at = std::ranges::find(own, vertex, &Place::vertex);
-  if (other == no_id || at == own.end()) return;
-  const std::vector<Place>& places = places_of(other, opposite(side));
-  const auto place = std::ranges::lower_bound(places, at->along, {}, &Place::along);
-  if (place != places.end() && place->along == at->along)
-    same_.push_back({PatchVertex{run.patch, vertex}, PatchVertex{other, place->vertex}});
+  const auto own = std::ranges::find_if(
+      cut.side_vertices, [&](const CutPatch::SideVertex& of) { return of.side == side && of.vertex == vertex; });
+  if (other == no_id || own == cut.side_vertices.end()) return;
+  const SideVertices places = vertices_of(other, opposite(side));
+  const std::size_t place = places.count_before(own->along);
+  if (place < places.size() && places[place].along == own->along)
+    same_.push_back({PatchVertex{run.patch, vertex}, PatchVertex{other, places[place].vertex}});
 }
 
 void EdgeSegments::join_corner(const PatchEdges::Face& face, const ParameterPoint& at) {

@@ -10,6 +10,8 @@
 
 #include "tess/cells/stitched_patch.h"
 #include "tess/closing/edge_runs.h"
+#include "tess/closing/edge_stops.h"
+#include "tess/closing/side_vertices.h"
 #include "tess/trimmed/cut_patch.h"
 
 namespace tessera::inline abi_0_1 {
@@ -44,10 +46,10 @@ struct EdgeSegment {
 /// The segments of all edges of a set, and the vertices that they need at the ends of edges.
 class [[gnu::visibility("hidden")]] EdgeSegments {
  public:
-  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut. All must outlive this
-  /// object.
+  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut; `stops`: for these
+  /// divisions, or null. All must outlive this object.
   EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-               std::span<const CutPatch> cuts);
+               std::span<const CutPatch> cuts, const EdgeStops* stops);
 
   /// Appends the segments of an edge: use by use, by growing parameters of the edge.
   void append(std::size_t edge, std::vector<EdgeSegment> & segments);
@@ -61,11 +63,7 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   const CutPatch* cut_of(std::uint32_t patch) const { return find_cut(cuts_, patch); }
 
  private:
-  /// A vertex of a side.
-  struct Place {
-    double along;  ///< the surface's parameter
-    std::uint32_t vertex;
-  };
+  using Place = SideVertices::Place;
   void append_chords(const EdgeRun& run, std::vector<EdgeSegment>& segments);
   void append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments);
   void append(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
@@ -74,12 +72,10 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   /// Completes a segment between two parameters of the loop's curve.
   static void append(EdgeSegment segment, const CurveAlongEdge& curve, double from, double to,
                      std::vector<EdgeSegment>& segments);
-  /// The vertices of a side by growing places.
-  const std::vector<Place>& places_of(std::uint32_t patch, Side side);
+  SideVertices vertices_of(std::uint32_t patch, Side side) const;
   /// Returns the vertex at a place from a to b; it is inserted if there is none.
   PatchVertex vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along);
   PatchVertex insert_on_side(std::uint32_t patch, Side side, std::uint32_t start, std::uint32_t end, double along);
-  std::uint32_t ring_vertex(std::uint32_t patch, std::size_t side, int k) const;
   std::optional<std::uint32_t> corner_vertex(std::uint32_t patch, bool end_u, bool end_v) const;
   /// Joins the vertices of a face's patches at a corner of them, if the point is one.
   void join_corner(const PatchEdges::Face& face, const ParameterPoint& at);
@@ -90,9 +86,9 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   const EdgeRuns& runs_;
   std::span<const Division> divisions_;
   std::span<const CutPatch> cuts_;
+  const EdgeStops* stops_;
   std::vector<InsertedVertex> inserted_;
   std::vector<std::array<PatchVertex, 2>> same_;
-  std::unordered_map<std::uint64_t, std::vector<Place>> sides_;     ///< by 4 * patch + side, as far as they are known
   std::unordered_multimap<std::uint64_t, std::uint32_t> on_sides_;  ///< vertices inserted where runs end on sides
 };
 

@@ -20,7 +20,7 @@ void sort_distinct(std::vector<double>& list, double same) {
 
 void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
                      FunctionRef<std::optional<Segments>(std::uint32_t patch, Side side)> segments,
-                     FunctionRef<ChordLimits(std::uint32_t patch)> limits) {
+                     FunctionRef<const ChordLimits&(std::uint32_t patch)> limits, Workspace& workspace) {
   const std::span<const EdgeRun> runs = runs_->of(edge);
   const auto whole = [&](const EdgeRun& run) { return run.is_side ? segments(run.patch, run.side) : std::nullopt; };
   const auto is_whole = [&](const EdgeRun& run) { return whole(run).has_value(); };
@@ -36,44 +36,47 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
     if (const auto along = whole(run)) add_vertices(run, set.sources[run.patch].domain, *along, stops);
   }
   sort_distinct(stops, same);
-  std::vector<double> found;
+  std::vector<double>& found = workspace.found;
   // Coedges in the edge's direction come first, so the stops do not depend on the order of faces.
   for (const bool reversed : {false, true}) {
     found.clear();
     for (const EdgeRun& run : runs)
-      if (!is_whole(run) && runs_->curve(run).coedge->reversed == reversed) divide(run, limits(run.patch), found);
+      if (!is_whole(run) && runs_->curve(run).coedge->reversed == reversed) divide(run, limits(run.patch), workspace);
     stops.insert(stops.end(), found.begin(), found.end());
     sort_distinct(stops, same);
   }
   for (const EdgeRun& run : runs)
-    if (!run.is_side && !is_laid(run, same)) lay(run, limits(run.patch));
+    if (!run.is_side && !is_laid(run, same)) lay(run, limits(run.patch), workspace);
 }
 
 void EdgeStops::add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments,
-                             std::vector<double>& found) const {
+                             std::vector<double>& found) {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
   const CurveAlongEdge curve = runs_->curve(run);
   const bool along_u = runs_along_u(run.side);
   const auto [low, high] = ends_of(pieces, along_u);
+  std::vector<double>& parameters = chords_[runs_->index(run)].parameters;
   for (int k = 0; k <= segments.rate(); ++k) {
     const double at = line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k);
-    if (at > low && at < high) found.push_back(curve.to_edge(parameter_at(pieces, along_u, at)));
+    if (!(at > low && at < high)) continue;
+    parameters.push_back(parameter_at(pieces, along_u, at));
+    found.push_back(curve.to_edge(parameters.back()));
   }
 }
 
-void EdgeStops::divide(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found) {
-  if (run.is_side) return add_segments(run, limits, found);
-  lay(run, limits);
+void EdgeStops::divide(const EdgeRun& run, const ChordLimits& limits, Workspace& workspace) {
+  if (run.is_side) return add_segments(run, limits, workspace.found);
+  lay(run, limits, workspace);
   const CurveAlongEdge curve = runs_->curve(run);
-  for (const double t : chords_[runs_->index(run)].parameters) found.push_back(curve.to_edge(t));
+  for (const double t : chords_[runs_->index(run)].parameters) workspace.found.push_back(curve.to_edge(t));
 }
 
-void EdgeStops::lay(const EdgeRun& run, const ChordLimits& limits) {
+void EdgeStops::lay(const EdgeRun& run, const ChordLimits& limits, Workspace& workspace) {
   LaidChords& chords = chords_[runs_->index(run)];
   chords.points.clear(), chords.parameters.clear();
-  std::vector<double> own;
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
-  chords.sliver = PieceChords().append(pieces, list(run.face, pieces, own), limits, chords.points, chords.parameters);
+  const ChordStops stops = list(run.face, pieces, workspace.listed);
+  chords.sliver = workspace.layer.append(pieces, stops, limits, chords.points, chords.parameters);
 }
 
 bool EdgeStops::is_laid(const EdgeRun& run, double same) const {

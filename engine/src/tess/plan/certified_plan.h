@@ -259,9 +259,15 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::string wanted(double tolerance) const;
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
+  /// The room for the triangles of a cut patch, and for the slivers along its loops.
+  struct CutRoom {
+    double given = 0;  ///< the errors of its vertices and of the fit
+    double tolerance = 0;
+    TrimmedPatch limits;
+  };
   /// Finds what chords along edges must keep for the faces on both sides, as patches are divided now.
-  Status find_stops(const Request& request, const CertifiedPlan& plan, EdgeStops& stops, const Execution& execution)
-      const;
+  Status find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan, EdgeStops& stops,
+                    const Execution& execution) const;
   /// Gives faces the same vertices along the edges of shapes.
   Status close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// `[4 * patch + side]`: whether triangles of two patches have the same border.
@@ -269,28 +275,27 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   bool is_cut(std::size_t patch) const { return set_->trims && set_->trims->is_cut[patch]; }
   /// Finds the sides of faces that loops cut, and keeps their patches from being divided as whole ones.
   void find_cut_faces();
-  /// The room for the triangles of a cut patch, and for the slivers along its loops.
-  struct CutRoom {
-    double given = 0;  ///< the errors of its vertices and of the fit
-    double tolerance = 0;
-    TrimmedPatch limits;
-  };
   CutRoom room_of(const CutPatch& cut, const Request& request, const CertifiedPlan& plan) const;
+  /// Returns the rooms of all cut patches, as patches are divided now. Errors: cancelled.
+  Result<std::vector<CutRoom>> find_rooms(const Request& request, const CertifiedPlan& plan, const Execution& execution)
+      const;
   /// Chooses the segments of the cut patches whose bounds exceed the limits: `excess` above 1. They may take `shares`
   /// of the room.
   Status choose_cut(const Request& request, std::span<const double> shares, std::span<const double> excess,
                     CertifiedPlan& plan) const;
   /// The facts that all patches of one pass are cut by. `is_shared`: by edge, whether two borders or more have it.
   struct CutPass {
-    const Request& request;
-    const EdgeStops* stops;  ///< null if no edges are closed
+    std::span<const CutRoom> rooms;  ///< by cut patch
+    const EdgeStops* stops;          ///< null if no edges are closed
     std::span<const std::uint8_t> is_shared;
   };
   std::vector<std::uint8_t> shared_edges() const;
   /// Cuts a patch, place `c` among the cuts, and sets its bounds. Returns the largest over its limit.
   double cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker, CertifiedPlan& plan) const;
-  /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds.
-  Status divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
+  /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds. If edges are
+  /// closed, sets `stops` to those that patches are cut by.
+  Status divide_and_cut(const Request& request, CertifiedPlan& plan, std::optional<EdgeStops>& stops,
+                        const Execution& execution) const;
   /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.
   double bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const;
   /// The error of a tolerance that loops cannot keep.

@@ -14,17 +14,20 @@ constexpr std::size_t edges_per_task = 16;
 
 }  // namespace
 
-Status CertifiedPlanner::find_stops(const Request& request, const CertifiedPlan& plan, EdgeStops& stops,
+Status CertifiedPlanner::find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan, EdgeStops& stops,
                                     const Execution& execution) const {
+  std::vector<ChordLimits> of_cuts;
+  for (const CutRoom& room : rooms) of_cuts.push_back(chord_limits(room.limits));
   const auto segments = [&](std::uint32_t patch, Side side) -> std::optional<Segments> {
     if (set_->trims && set_->trims->is_cut[patch]) return {};
     return plan.divisions_[patch].border[static_cast<std::size_t>(side)];
   };
-  const auto limits = [&](std::uint32_t patch) {
-    return chord_limits(room_of(*find_cut(plan.cuts(), patch), request, plan).limits);
+  const auto limits = [&](std::uint32_t patch) -> const ChordLimits& {
+    return of_cuts[static_cast<std::size_t>(find_cut(plan.cuts(), patch) - plan.cuts().data())];
   };
   const auto find = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, edge, segments, limits);
+    EdgeStops::Workspace workspace;
+    for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, edge, segments, limits, workspace);
   };
   return parallel_for(set_->edges->edges.size(), edges_per_task, {.cancel = execution.cancel}, find);
 }
@@ -39,13 +42,15 @@ double CertifiedPlanner::same_share(const Request& request) const {
 Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   constexpr int max_attempts = 6;
   Request cut = request;
+  std::optional<EdgeStops> stops;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (set_->trims)
-      if (Status status = divide_and_cut(cut, plan, execution); !status.ok()) return status;
+      if (Status status = divide_and_cut(cut, plan, stops, execution); !status.ok()) return status;
     if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
     Result<ClosedEdges> made = tessera::close_edges(
-        *set_, *runs_, plan.divisions_, plan.rare_->cuts, options_.max_gap, same_share(request), joined_borders(plan),
-        [this](std::uint32_t patch) { return chord(patch); }, execution.cancel);
+        *set_, *runs_, plan.divisions_, plan.rare_->cuts, stops ? &*stops : nullptr, options_.max_gap,
+        same_share(request), joined_borders(plan), [this](std::uint32_t patch) { return chord(patch); },
+        execution.cancel);
     if (!made) return made.status();
     const ClosedEdges& closed = plan.rare_->closed.emplace(*std::move(made));
     double excess = 0;

@@ -16,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "parallel/parallel_for.h"
 #include "tess/edges/side_curve.h"
@@ -28,7 +29,7 @@ namespace {
 constexpr double cell_share = 0.6, sliver_share = 0.25;
 constexpr double band_share = 1.5;  // a bound of most triangles of the band over that of cells
 constexpr int max_attempts = 16;
-constexpr std::size_t cuts_per_task = 4;
+constexpr std::size_t cuts_per_task = 4, rooms_per_task = 64;
 
 }  // namespace
 
@@ -77,6 +78,18 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
   room.limits.domain = set_->sources[patch].domain;
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
+}
+
+Result<std::vector<CertifiedPlanner::CutRoom>> CertifiedPlanner::find_rooms(const Request& request,
+                                                                            const CertifiedPlan& plan,
+                                                                            const Execution& execution) const {
+  std::vector<CutRoom> rooms(plan.cuts().size());
+  const auto find = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) rooms[c] = room_of(plan.cuts()[c], request, plan);
+  };
+  Status status = parallel_for(rooms.size(), rooms_per_task, {.cancel = execution.cancel}, find);
+  if (!status.ok()) return status;
+  return rooms;
 }
 
 double CertifiedPlanner::bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const {
@@ -146,7 +159,7 @@ std::vector<std::uint8_t> CertifiedPlanner::shared_edges() const {
 double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker,
                                    CertifiedPlan& plan) const {
   const PatchTrims::Cut& cut = set_->trims->cuts[c];
-  CutRoom room = room_of(plan.rare_->cuts[c], pass.request, plan);
+  CutRoom room = pass.rooms[c];
   for (const Side side : all_sides) {
     const std::uint32_t edge = edges_.edge(cut.patch, side);
     room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && pass.is_shared[edge];
@@ -159,7 +172,8 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
   return bound_cut(room, plan.rare_->cuts[c], plan);
 }
 
-Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
+Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, std::optional<EdgeStops>& stops,
+                                        const Execution& execution) const {
   const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
   if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
   plan.rare_->trims = set_->trims;
@@ -171,19 +185,18 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   std::vector<double> shares(cuts.size(), cell_share * request.cut_share), excess(cuts.size(), 2);
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
-    const std::vector<Division> before = std::move(plan.divisions_);
-    plan.divisions_.clear();
+    const std::vector<Division> before = std::exchange(plan.divisions_, {});
     divide(request.tolerance, plan);
-    std::optional<EdgeStops> stops;
+    const Result<std::vector<CutRoom>> rooms = find_rooms(request, plan, execution);
+    if (!rooms) return rooms.status();
     if (runs_)
-      if (Status status = find_stops(request, plan, stops.emplace(*runs_, same_share(request)), execution);
-          !status.ok())
+      if (Status status = find_stops(*rooms, plan, stops.emplace(*runs_, same_share(request)), execution); !status.ok())
         return status;
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
       for (std::size_t c = begin; c < end; ++c)
         if (excess[c] > 1 || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
-          excess[c] = cut_patch(c, {request, stops ? &*stops : nullptr, is_shared}, maker, plan);
+          excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared}, maker, plan);
     };
     const Execution quiet{.cancel = execution.cancel};
     if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
