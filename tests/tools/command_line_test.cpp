@@ -65,6 +65,7 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure({"eval", teapot, "--grid", "3x3", "--params", "p.csv"}, 2, "");
   expect_failure({"eval", teapot, "--grid", "3x3", "--derivs", "3"}, 2, "--derivs");
   expect_failure({"eval", teapot, "--grid", "3x3", "--format", "xml"}, 2, "--format");
+  expect_failure({"eval"}, 2, "tessera: eval: expected MODEL, found none\n");
   expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2, "--output");
   expect_failure({"tessellate", teapot, "-o", "a.off", "--grid", "3x3"}, 2,
                  "meshes are written as .obj, .ply, .stl, .glb, .gltf");
@@ -77,7 +78,7 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
 }
 
 TEST_F(CommandLine, RulesOfOptionsAreSaidInPlainWords) {
-  expect_failure({"info"}, 2, "tessera: info: expected MODEL, found none\n");
+  expect_failure({"info"}, 2, "tessera: MODEL: expected files or --list FILE, found none\n");
   expect_failure({"tessellate", teapot, "--grid", "3x3"}, 2,
                  "tessera: tessellate: expected --output FILE, found none\n");
   expect_failure({"eval", teapot}, 2, "tessera: eval: expected --grid or --params, found none of them\n");

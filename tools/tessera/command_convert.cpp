@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "arguments.h"
+#include "batch.h"
 #include "commands.h"
 #include "console.h"
 #include "loading.h"
@@ -80,12 +81,15 @@ void add_convert(Command& tool, Session& session) {
       .check(fault_of_output);
   add_stream_format(command, {"bpt", "json", "obj"}, options->format);
   add_reading(command, options->models);
+  add_batch(command, session.common.batch);
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
+    append_listed(session.common.batch, options->models.files);
     check_input(options->models);
     check_stream_format(options->output, options->format);
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
+    check_batch(session.common.batch, plan);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_convert(job, *options, session.common, timings);

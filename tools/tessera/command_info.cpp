@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "arguments.h"
+#include "batch.h"
 #include "commands.h"
 #include "facts.h"
 #include "joins.h"
@@ -201,9 +202,11 @@ void add_info(Command& tool, Session& session) {
   command.add_count("--joins", "COUNT", "Measure at most this many joins; 0 leaves them out [20000]", 0, 1'000'000'000,
                     [options](std::size_t count) { options->max_joins = count; });
   add_reading(command, options->models);
+  add_batch(command, session.common.batch);
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
+    append_listed(session.common.batch, options->models.files);
     check_input(options->models);
     const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false});
     session.command = [options, plan, &session] {

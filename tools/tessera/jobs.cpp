@@ -7,6 +7,7 @@
 #include <map>
 
 #include "arguments.h"
+#include "batch.h"
 #include "progress.h"
 #include "tessera/io.h"
 
@@ -70,13 +71,12 @@ void check_outputs_differ(const std::vector<Job>& jobs, const OutputRule& rule) 
   }
 }
 
-/// The output of --json for a job that failed.
+}  // namespace
+
 Json error_json(const Job& job, const Status& status) {
   return {{"files", job.inputs},
           {"error", {{"code", std::string(name(status.code()))}, {"message", status.message()}}}};
 }
-
-}  // namespace
 
 bool is_folder(const std::string& output) {
   std::error_code error;
@@ -102,6 +102,7 @@ Plan plan_jobs(const std::vector<std::string>& words, const std::string& output,
 
 Status run_jobs(const Plan& plan, const CommonOptions& options,
                 const std::function<Status(const Job&, Timings&)>& work) {
+  if (!options.batch.list.empty() && !plan.jobs.empty()) return run_batch(plan, options, work);
   Status failure;
   const auto fail = [&](const Job& job, const Status& status) {
     if (!is_already_said(status)) {

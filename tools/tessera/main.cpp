@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "batch.h"
 #include "commands.h"
 #include "console.h"
 #include "help.h"
@@ -40,7 +41,9 @@ int run_command(const Session& session) {
     return bad_command_line;
   }
   catch_signals();
-  const Status status = with_threads(session.common.threads, session.command);
+  // Worker processes are made before there are threads, and have one each.
+  const int threads = session.common.batch.list.empty() ? session.common.threads : 0;
+  const Status status = with_threads(threads, session.command);
   if (!status.ok() && status.code() != StatusCode::cancelled && !is_already_said(status)) complain(status.message());
   remove_empty_folders();
   end_by_signal();
@@ -55,6 +58,7 @@ int run(int argc, char** argv) {
   tool.add_flag("--version", "Print the version", version);
   tool.add_help();
   add_commands(tool, session);
+  session.common.words = result_words(argc, argv);
   Parsed parsed;
   try {
     parsed = parse(tool, argc, argv);
