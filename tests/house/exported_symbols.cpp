@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 14> internal_export{
+constexpr std::array<std::string_view, 19> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -20,6 +20,11 @@ constexpr std::array<std::string_view, 14> internal_export{
     "tessera::UniformGrid::run",
     "tessera::PatchSet::Impl::box",
     "tessera::TrimRegion::Impl::for_points",
+    "tessera::EdgeRuns::EdgeRuns",
+    "tessera::EdgeRuns::curve",
+    "tessera::EdgeRuns::pieces",
+    "tessera::curve_parameter",
+    "tessera::edge_parameter",
     "tessera::check_parts",
     "tessera::ViewChecks::add",
     "tessera::ViewChecks::status",

@@ -39,6 +39,7 @@
 
 // Headers of the libraries tessera::ray and tessera::io are installed with these.
 #if __has_include("tessera/ray_scene.h")
+#include "tessera/ray_hit.h"
 #include "tessera/ray_scene.h"
 #endif
 #if __has_include("tessera/io.h")

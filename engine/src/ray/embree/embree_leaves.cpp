@@ -37,8 +37,13 @@ struct EmbreeLeaves::State {
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    const bool is_out = state.tracer.use_of(arguments->primID) == PatchUse::out;
-    *arguments->bounds_o = padded(is_out ? Box3() : state.tracer.nets->boxes()[arguments->primID]);
+    const LeafTracer& tracer = state.tracer;
+    const unsigned k = arguments->primID;
+    if (k >= tracer.first_tube) {
+      *arguments->bounds_o = padded(tracer.tubes->box(k - tracer.first_tube));
+    } else {
+      *arguments->bounds_o = padded(tracer.use_of(k) == PatchUse::out ? Box3() : tracer.nets->boxes()[k]);
+    }
   }
 
   /// Searches a leaf for the valid rays of a call, then calls `then(k, ray, query)` for each. On machines without wider
@@ -114,7 +119,7 @@ Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execu
   Owned<RTCScene, SceneRelease> scene(rtcNewScene(device));
   RTCGeometry geometry = state.geometry.get();
   if (!geometry || !scene) return state.monitor.take();
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(leaves.nets->leaves().size()));
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(leaves.primitives()));
   rtcSetGeometryUserData(geometry, &state);
   rtcSetGeometryBoundsFunction(geometry, &State::bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, &State::intersect);

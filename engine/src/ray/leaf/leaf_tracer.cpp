@@ -75,7 +75,12 @@ double TracedLeaves::tolerance_of(const Leaf& leaf) const {
                   2 * search_rounding(leaf.degree_u, leaf.degree_v, leaf.halvings(), SearchSpace::max_depth));
 }
 
+void LeafTracer::search_tube(unsigned tube, RayQuery& query) const {
+  if (tubes->patch(tube) < patches || query.wanted == RootsWanted::all) tubes->search(tube, query);
+}
+
 void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const {
+  if (leaf_index >= first_tube) return search_tube(leaf_index - first_tube, query);
   fetch(&nets->local(leaf_index), kernel::ray_leaf_bytes(false));
   const Leaf& leaf = nets->leaves()[leaf_index];
   if (leaf.patch >= patches && query.wanted != RootsWanted::all) return;
@@ -95,8 +100,10 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
 }
 
 void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes, SearchSpace& space) const {
-  if (nets->leaves()[leaf_index].patch >= patches) return;  // packets never ask for all roots
-  const bool together = kernels->packets != nullptr && use_of(leaf_index) == PatchUse::whole;
+  // Packets never ask for all roots.
+  const bool is_tube = leaf_index >= first_tube;
+  if (!is_tube && nets->leaves()[leaf_index].patch >= patches) return;
+  const bool together = !is_tube && kernels->packets != nullptr && use_of(leaf_index) == PatchUse::whole;
   unsigned open = together ? decide(leaf_index, packet, lanes) : lanes;
   for (std::size_t lane = 0; open != 0; ++lane, open >>= 1) {
     if (open & 1u) search(leaf_index, packet.probes[lane], *packet.queries[lane], space);

@@ -12,6 +12,7 @@
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
 #include "ray/seam/lazy_adjacency.h"
+#include "ray/tube/edge_tubes.h"
 
 namespace tessera::inline abi_0_1 {
 
@@ -41,6 +42,10 @@ struct TracedLeaves {
                                            ///< all hits
   double tolerance = 0;                    ///< as requested, in the scene's coordinates
   const LeafTrims* trims = nullptr;        ///< null if no patch is cut
+  const EdgeTubes* tubes = nullptr;        ///< their primitives follow those of the leaves
+  unsigned first_tube = 0;                 ///< the number of leaves
+
+  std::size_t primitives() const { return first_tube + tubes->count(); }
 
   /// What the loops of its face keep of a leaf.
   PatchUse use_of(unsigned leaf) const { return trims == nullptr ? PatchUse::whole : trims->use(leaf); }
@@ -48,12 +53,12 @@ struct TracedLeaves {
   double tolerance_of(const Leaf& leaf) const;
 };
 
-/// Traces leaves; refers to the data that it is made of. Const calls from any number of threads, each with a search
+/// Traces leaves and tubes; refers to the data that it is made of. Const calls from any number of threads, each with a search
 /// space of its own.
 struct LeafTracer final : OriginTest, TracedLeaves {
   const kernel::RayKernels* kernels = nullptr;
 
-  /// Adds to the query the roots that it wants from a leaf. `probe` is the query's, reused from leaf to leaf.
+  /// Adds to the query the roots that it wants from a leaf or a tube. `probe` is the query's, reused from leaf to leaf.
   void search(unsigned leaf, kernel::RayProbe& probe, RayQuery& query, SearchSpace& space) const;
 
   /// Does so for the queries of a packet whose bits are set in `lanes`, each as if alone.
@@ -63,6 +68,7 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   OriginRoot decide_root(const RayLine& line, const LeafRoot& root) const override;
 
  private:
+  void search_tube(unsigned tube, RayQuery& query) const;
   unsigned decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const;
   unsigned take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
   unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;

@@ -90,6 +90,17 @@ Vec3 near_centre(const Ray& ray, const RayLine& line, const Vec3& c) {
           point_on_line(o.z, line.base, d.z, c.z)};
 }
 
+/// Sets the range within the scene's box.
+void clip(const Box3& box, RayLine& line) {
+  line.enter = line.near - line.slack;
+  line.leave = line.far + line.slack;
+  const Box3 room = clipping_box(box);
+  clip(line.start.x, line.direction.x, room.lower.x, room.upper.x, line);
+  clip(line.start.y, line.direction.y, room.lower.y, room.upper.y, line);
+  clip(line.start.z, line.direction.z, room.lower.z, room.upper.z, line);
+  line.empty = !(line.enter <= line.leave);
+}
+
 /// Completes the line from base, start, direction and speed. `scale`: an upper bound of the factor by which lengths
 /// grow. One instance per kind of ray, so that each is inlined where it is used.
 template <bool Placed>
@@ -100,13 +111,7 @@ void complete(const Ray& ray, double scale, const Box3& box, RayLine& line) {
   line.slack = 8 * epsilon * (1 + std::abs(line.base) * line.speed);
   line.near = (ray.tnear - line.base) * line.speed - line.shift;
   line.far = (ray.tfar - line.base) * line.speed - line.shift;
-  line.enter = line.near - line.slack;
-  line.leave = line.far + line.slack;
-  const Box3 room = clipping_box(box);
-  clip(line.start.x, line.direction.x, room.lower.x, room.upper.x, line);
-  clip(line.start.y, line.direction.y, room.lower.y, room.upper.y, line);
-  clip(line.start.z, line.direction.z, room.lower.z, room.upper.z, line);
-  line.empty = !(line.enter <= line.leave);
+  clip(box, line);
   if (!line.empty) {
     const OrthonormalBasis across(line.direction);
     line.across[0] = across.first, line.across[1] = across.second;
@@ -124,6 +129,13 @@ RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box) {
   line.start = frame.scale * near_centre(ray, line, frame.centre);
   complete<false>(ray, frame.scale, box, line);
   return line;
+}
+
+RayLine moved(const RayLine& line, const Vec3& by, const Box3& box) {
+  RayLine out = line;
+  out.start += by;
+  clip(box, out);
+  return out;
 }
 
 std::optional<Placement> Placement::of(const Affine& to_world, const SceneFrame& frame) {

@@ -1,6 +1,7 @@
 #pragma once
 // The line of a ray in the coordinates of exact rays, accurate even if the ray's origin is far away.
 
+#include <cmath>
 #include <optional>
 
 #include "tessera/geometry.h"
@@ -43,12 +44,22 @@ struct RayLine {
   double base = 0, shift = 0, speed = 1;  ///< t = base + (shift + s) / speed
 };
 
+/// Returns the distance of a point, in the scene's coordinates, from a line.
+inline double distance(const RayLine& line, const Vec3& point) {
+  const Vec3 from_start = point - line.start;
+  const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
+  return std::sqrt(x * x + y * y);
+}
+
 /// Returns the box to which lines are cut: the scene's, in its own coordinates, with the rounding of start, direction
 /// and quotients.
 Box3 clipping_box(const Box3& box);
 
 /// Returns the line of a valid ray. `box`: of the scene, in its own coordinates.
 RayLine line_of(const Ray& ray, const SceneFrame& frame, const Box3& box);
+
+/// Returns the line moved by a vector across it.
+RayLine moved(const RayLine& line, const Vec3& by, const Box3& box);
 
 /// The placement of a model elsewhere, in the form that rays need.
 struct Placement {

@@ -31,6 +31,7 @@ struct LeafRoot {
   bool certified = false;         ///< the only root of its surroundings, up to rounding
   bool upwards = false;           ///< if the gains are known: the side of du x dv to which the line goes
   bool has_point = false;
+  bool is_seam = false;   ///< a point of an edge near the line: see edge_tubes.h
   Vec3 position, du, dv;  ///< if has_point: of the patch, in the scene's coordinates
 };
 
@@ -133,6 +134,7 @@ struct RayQuery {
   const RootFilter* filter = nullptr;  ///< if not all roots count; never if all are wanted
   std::size_t index = 0;               ///< index of the ray in the batch, for the filter
   bool stopped = false;                ///< by the filter
+  double seam_gap = 0;                 ///< if all are wanted: the largest gap of the edges that the line passes
 
   /// Returns t of a root that was taken. Call it where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
@@ -157,6 +159,12 @@ struct RayQuery {
     LeafRoot kept = root;
     kept.certified = kept.certified && side == TrimSide::inside;
     return add(kept);
+  }
+
+  /// Takes the point of an edge that the line passes within its gap. Where all roots are wanted it is none.
+  void take_seam(const LeafRoot& root, double gap) {
+    seam_gap = std::max(seam_gap, gap);
+    if (wanted != RootsWanted::all) add(root);
   }
 
  private:

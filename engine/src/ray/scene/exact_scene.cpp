@@ -16,11 +16,13 @@
 #include "ray/embree/embree_scene.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
+#include "ray/line/line_aside.h"
 #include "ray/line/ray_lines.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/coherent_lines.h"
+#include "ray/scene/exact_options.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
@@ -35,6 +37,7 @@ constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of le
 constexpr double default_tolerance = 2e-12;                     // share of the size
 constexpr std::size_t max_leaves = 0xffffffff;
 constexpr double max_bend = 1;  // share of a piece's length
+const double least_tolerance = 2 * search_rounding(max_degree, max_degree, Leaf::max_halvings, SearchSpace::max_depth);
 constexpr std::size_t min_in_turn = 4;
 static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
 
@@ -45,24 +48,18 @@ struct TracedTurn {
   std::span<const std::optional<RayQuery>> queries;
 };
 
-/// Written so that NaN fails.
-bool holds(const Box3& box, const Box3& inside) {
-  const Vec3 &a = box.lower, &b = inside.lower, &c = inside.upper, &d = box.upper;
-  return a.x <= b.x && a.y <= b.y && a.z <= b.z && c.x <= d.x && c.y <= d.y && c.z <= d.z;
-}
-
-std::string text_of(const Box3& box) { return text(box.lower) + " to " + text(box.upper); }
-
 class ExactScene final : public PatchScene, private ExactSource {
  public:
   ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
       : PatchScene(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
 
   std::size_t memory_bytes() const override {
-    return nets_.memory_bytes() + trims_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
+    return nets_.memory_bytes() + trims_.memory_bytes() + tubes_.memory_bytes() + adjacency_.memory_bytes() +
+           scene_.memory_bytes();
   }
 
   const ExactSource* exact_source() const override { return this; }
+  std::vector<double> edge_gaps() const override { return tubes_.gaps(); }
 
  private:
   bool fresh() const override { return Impl::fresh(); }
@@ -87,10 +84,13 @@ class ExactScene final : public PatchScene, private ExactSource {
   double size() const override { return size_; }
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
   using PatchScene::resolve;
-  Result<Box3> frame_box() const;
   std::size_t own_patches() const { return options_.patches.value_or(set().patch_count()); }
   Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), max_bend}; }
-  double measure();
+  double tolerance() const { return options_.tolerance.value_or(default_tolerance * size_) * frame_.scale; }
+  /// Returns the radius of tubes around edges whose faces meet: roots beside them are right up to the tolerance.
+  double tube_radius() const { return 4 * std::max(tolerance(), least_tolerance); }
+  void measure();
+  void append_hits(RayQuery& query, const RayQuery& given, std::vector<Hit>& hits) const;
   template <class Done>
   void trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, const Done& done) const;
   template <class Done>
@@ -105,6 +105,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   LeafNets nets_;  // borrowed by scene_, like the borders
   LazyAdjacency adjacency_;
   LeafTrims trims_;
+  EdgeTubes tubes_;
   EmbreeLeaves scene_;
   RaySceneOptions options_;
   mutable SearchPool pool_;
@@ -117,32 +118,19 @@ class ExactScene final : public PatchScene, private ExactSource {
   int updates_ = 0;  // since the last build
 };
 
-/// Returns the box that gives size and centre.
-Result<Box3> ExactScene::frame_box() const {
-  const Box3 box = set().box();
-  if (!options_.box) return box;
-  if (!holds(*options_.box, box))
-    return Status(StatusCode::invalid_argument, "the box of the ray scene, " + text_of(*options_.box) +
-                                                    ", must contain that of the patch set, " + text_of(box));
-  return *options_.box;
-}
-
-/// Measures the boxes of all current pieces. Returns the tolerance.
-double ExactScene::measure() {
+/// Measures the boxes of all current pieces.
+void ExactScene::measure() {
   scene_box_ = {};
   const std::span<const Box3> boxes = nets_.boxes();
   for (std::size_t leaf = 0; leaf < boxes.size(); ++leaf)
     if (!trims_.any() || trims_.use(leaf) != PatchUse::out) scene_box_.extend(boxes[leaf]);
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
-  const double tolerance = options_.tolerance.value_or(default_tolerance * size_) * frame_.scale;
-  const double least = 2 * search_rounding(max_degree, max_degree, Leaf::max_halvings, SearchSpace::max_depth);
-  const double reach = std::max(tolerance, least);
+  const double reach = std::max({tolerance(), least_tolerance, tubes_.largest_gap()});
   scene_box_.lower += Vec3{-reach, -reach, -reach}, scene_box_.upper += Vec3{reach, reach, reach};
-  return tolerance;
 }
 
 Status ExactScene::build(const Execution& execution) {
-  const Result<Box3> box = frame_box();
+  const Result<Box3> box = frame_box(options_, set().box());
   if (!box) return box.status();
   if (own_patches() > set().patch_count())
     return Status(StatusCode::invalid_argument, "the ray scene takes " + counted(own_patches(), "patch", "patches") +
@@ -155,11 +143,19 @@ Status ExactScene::build(const Execution& execution) {
   updates_ = 0;
   adjacency_.forget();
   if (Status status = nets_.plan(set(), frame_, flatness(), execution); !status.ok()) return status;
-  if (nets_.leaves().size() > max_leaves)
-    return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
   if (Status status = trims_.build(set(), nets_.planned(), execution); !status.ok()) return status;
+  tubes_.clear();
+  if (options_.seams)
+    if (Status status = tubes_.build(set(), frame_, adjacency_, tube_radius(), execution); !status.ok()) return status;
+  const std::size_t leaf_count = nets_.leaves().size();
+  if (leaf_count + tubes_.count() > max_leaves)
+    return Status(StatusCode::unsupported, "more than the 2^32 - 1 pieces of patches of one ray scene");
   if (Status status = nets_.make(set(), execution); !status.ok()) return status;
-  const TracedLeaves leaves{&set(), &nets_, &adjacency_, own_patches(), measure(), trims_.any() ? &trims_ : nullptr};
+  measure();
+  const TracedLeaves leaves{&set(),      &nets_,
+                            &adjacency_, own_patches(),
+                            tolerance(), trims_.any() ? &trims_ : nullptr,
+                            &tubes_,     static_cast<unsigned>(leaf_count)};
   if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
   if (!follows_) nets_.drop_boxes();
   return {};
@@ -167,18 +163,24 @@ Status ExactScene::build(const Execution& execution) {
 
 Status ExactScene::update(std::uint64_t since, const Execution& execution) {
   const bool stood = std::exchange(follows_, true);
-  const Result<Box3> box = frame_box();
+  const Result<Box3> box = frame_box(options_, set().box());
   if (!box) return box.status();
   const bool has_frame = options_.box || frame_.holds(*box);
   if (!stood || !has_frame || ++updates_ == options_.rebuild_after) return build(execution);
   size_ = box->diagonal();
   adjacency_.forget();
-  if (Status status = nets_.update(set(), set().edited_since(since), execution); !status.ok()) return status;
-  return scene_.refit(measure(), execution);
+  const std::vector<std::uint32_t> edited = set().edited_since(since);
+  if (Status status = nets_.update(set(), edited, execution); !status.ok()) return status;
+  const Result<bool> same = tubes_.update(edited, adjacency_, tube_radius(), execution);
+  if (!same) return same.status();
+  if (!*same) return build(execution);
+  measure();
+  return scene_.refit(tolerance(), execution);
 }
 
 void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const {
   hit.flags = {};
+  hit.flags.seam = root.is_seam;
   if (!root.certified) {
     hit.flags.uncertified = true;
     hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
@@ -195,11 +197,7 @@ void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts par
     at = {frame_.centre + at.position, frame_.scale * at.du, frame_.scale * at.dv};
   }
   set_surface_point(set(), size_ * frame_.scale, 1 / frame_.scale, root.patch, root.u, root.v, at, hit, parts);
-  if (parts.point) {
-    const Vec3 from_start = frame_.to_scene(hit.position) - line.start;
-    const double x = dot(line.across[0], from_start), y = dot(line.across[1], from_start);
-    hit.residual = std::sqrt(x * x + y * y) / frame_.scale;
-  }
+  if (parts.point) hit.residual = distance(line, frame_.to_scene(hit.position)) / frame_.scale;
   if (!root.certified && parts.normal) {
     constexpr double sine = 1e-3;
     hit.flags.tangential = !hit.flags.degenerate_normal && std::abs(dot(hit.normal, line.direction)) <= sine;
@@ -342,15 +340,37 @@ void ExactScene::trace(std::span<RayQuery* const> queries) const {
   trace_queries(queries, space);
 }
 
-void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
+/// Appends the hits of a query, which is the given one or for its line moved sideways.
+void ExactScene::append_hits(RayQuery& query, const RayQuery& given, std::vector<Hit>& hits) const {
   keep_distinct(set(), adjacency_.of(set()), query.roots);
   for (const LeafRoot& root : query.roots) {
     if (root.patch >= own_patches()) continue;
-    hits.push_back(hit_at(query.line, root));
-    hits.back().t = query.t_of(root);
-    hits.back().flags.incomplete = query.incomplete;
-    hits.back().steps = saturated_u16(query.steps);
+    Hit& hit = hits.emplace_back(hit_at(query.line, root));
+    hit.t = query.t_of(root);
+    if (&query != &given) hit.residual = distance(given.line, frame_.to_scene(hit.position)) / frame_.scale;
+    hit.flags.seam = given.seam_gap > 0;
+    hit.flags.incomplete = given.incomplete;
+    hit.steps = saturated_u16(given.steps);
   }
+}
+
+void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
+  for (std::size_t way = 0; query.seam_gap > 0 && way < ways_aside; ++way) {
+    const RayLine line = line_aside(query.line, way, query.seam_gap, scene_box_);
+    RayQuery other(query.ray, line, RootsWanted::all);
+    if (!line.empty) {
+      const FlushDenormals flush;
+      trace(other);
+    }
+    query.steps += other.steps;
+    query.overflow |= other.overflow;
+    if (query.overflow) return;
+    if (other.seam_gap > 0) continue;
+    query.incomplete = other.incomplete;
+    return append_hits(other, query, hits);
+  }
+  query.incomplete |= query.seam_gap > 0;
+  append_hits(query, query, hits);
 }
 
 Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
@@ -362,28 +382,14 @@ Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
     const FlushDenormals flush;
     trace(query);
   }
-  if (query.overflow) return Status(StatusCode::out_of_memory, "out of memory");
-  hits_of(query, hits);
-  return {};
+  if (!query.overflow) hits_of(query, hits);
+  return query.overflow ? Status(StatusCode::out_of_memory, "out of memory") : Status();
 }
 
 }  // namespace
 
 Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options) {
-  if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
-    return Status(
-        StatusCode::invalid_argument,
-        "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces per side, not " + std::to_string(pieces));
-  }
-  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
-    return Status(StatusCode::invalid_argument,
-                  "the tolerance of a ray scene must be a finite length above 0, not " + text(*options.tolerance));
-  }
-  if (options.rebuild_after < 0) {
-    return Status(StatusCode::invalid_argument, "the number of refits until a rebuild is " +
-                                                    std::to_string(options.rebuild_after) +
-                                                    ", it must be at least 1, or 0 for none");
-  }
+  if (Status status = check_exact(options); !status.ok()) return status;
   const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   Result<EmbreeLeaves> scene = EmbreeLeaves::make(*isa);

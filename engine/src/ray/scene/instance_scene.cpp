@@ -122,10 +122,14 @@ Status InstanceScene::build(const Execution& execution) {
     if (!instance.scene->fresh())
       return Status(StatusCode::stale, name_of(k) + "the patch set of its scene was edited: refit that scene first",
                     static_cast<std::ptrdiff_t>(k));
-    const auto placement = Placement::of(instance.to_world, instance.source->tracer().nets->frame());
+    const LeafTracer& tracer = instance.source->tracer();
+    const auto placement = Placement::of(instance.to_world, tracer.nets->frame());
     if (placement) {
       const double condition = instance.to_world.norm_bound() * placement->growth;
-      boxes[k] = placed_box(instance.to_world, condition, instance.scene->box());
+      const double gap = tracer.tubes->largest_gap() / tracer.nets->frame().scale;
+      const Box3 box = instance.scene->box();
+      boxes[k] =
+          placed_box(instance.to_world, condition, {box.lower - Vec3{gap, gap, gap}, box.upper + Vec3{gap, gap, gap}});
     }
     if (!placement || !is_finite(boxes[k].lower) || !is_finite(boxes[k].upper))
       return Status(is_finite(instance.to_world) ? StatusCode::invalid_argument : StatusCode::non_finite,
@@ -308,7 +312,6 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   std::vector<Hit> own;
   const auto first = static_cast<std::ptrdiff_t>(hits.size());
   const auto take = [&](unsigned instance, RayQuery& query) {
-    lane.take(query, instance);
     try {
       own.clear();
       instances_[instance].source->hits_of(query, own);
@@ -319,6 +322,7 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
     } catch (...) {  // called from Embree, which cannot handle exceptions
       lane.overflow = true;
     }
+    lane.take(query, instance);
   };
   {
     const FlushDenormals flush;

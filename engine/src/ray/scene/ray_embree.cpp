@@ -30,13 +30,15 @@ void bounds(const RTCBoundsFunctionArguments* arguments) {
     return;
   }
   const SceneFrame& frame = tracer.nets->frame();
+  const unsigned k = arguments->primID;
+  const bool is_tube = k >= tracer.first_tube;
   Vec3 low{-1, -1, -1}, high{1, 1, 1};  // holds every leaf
   try {
-    const Box3 box = tracer.nets->box(*tracer.set, arguments->primID);
+    const Box3 box = is_tube ? tracer.tubes->box(k - tracer.first_tube) : tracer.nets->box(*tracer.set, k);
     low = box.lower, high = box.upper;
   } catch (...) {  // no memory; Embree cannot handle exceptions
   }
-  const double pad = tracer.tolerance_of(tracer.nets->leaves()[arguments->primID]) + 1e-12;
+  const double pad = (is_tube ? 0 : tracer.tolerance_of(tracer.nets->leaves()[k])) + 1e-12;
   low = frame.to_model(low - Vec3{pad, pad, pad}), high = frame.to_model(high + Vec3{pad, pad, pad});
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(max_abs(low), max_abs(high));
   const auto below = [&](double x) { return std::nextafter(static_cast<float>(x - rounding), -infinity); };
@@ -67,7 +69,7 @@ class LeafCall {
   /// Returns whether there is anything to hit.
   static bool is_open(const Arguments* arguments) {
     const ExactSource& source = source_of(arguments->geometryUserPtr);
-    return source.fresh() && arguments->primID < source.tracer().nets->leaves().size();
+    return source.fresh() && arguments->primID < source.tracer().primitives();
   }
 
   /// Finds the leaf's nearest root on one of the rays that no filter rejects, as a hit; the ray then ends there.
@@ -173,7 +175,7 @@ Result<const ExactSource*> usable_source(const RayScene& scene) {
 }
 
 void commit_geometry(const ExactSource& source, RTCGeometry geometry) {
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(source.tracer().nets->leaves().size()));
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(source.tracer().primitives()));
   rtcCommitGeometry(geometry);
 }
 

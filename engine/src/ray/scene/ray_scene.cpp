@@ -216,6 +216,13 @@ Result<Hit> RayScene::resolve(const Ray& ray, std::uint32_t patch, double u, dou
 }
 
 std::uint64_t RayScene::revision() const { return impl_->revision(); }
+Result<std::vector<double>> RayScene::edge_gaps() const {
+  return guarded([&]() -> Result<std::vector<double>> {
+    if (!impl_->fresh()) return stale();
+    return impl_->edge_gaps();
+  });
+}
+
 Box3 RayScene::box() const { return impl_->box(); }
 std::size_t RayScene::memory_bytes() const { return impl_->memory_bytes(); }
 

@@ -43,6 +43,8 @@ class RayScene::Impl {
   virtual Result<Hit> resolve(std::uint32_t patch, double u, double v) const;
   virtual Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const;
 
+  virtual std::vector<double> edge_gaps() const { return {}; }
+
   Box3 box() const { return fresh() ? model_box() : Box3{}; }
   std::uint64_t revision() const { return revision_; }
   virtual std::size_t memory_bytes() const = 0;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/internal_export.h"
 #include "block/coedge_parameter.h"
 #include "block/patch_edges.h"
 #include "block/patch_set_impl.h"
@@ -48,7 +49,7 @@ inline constexpr double least_same_share = 1e-9, largest_same_share = 1e-5;
 class [[gnu::visibility("hidden")]] EdgeRuns {
  public:
   /// The set must have edges, and must outlive the runs.
-  explicit EdgeRuns(const PatchSet::Impl& set);
+  TESSERA_INTERNAL_EXPORT explicit EdgeRuns(const PatchSet::Impl& set);
 
   /// The runs of an edge: use by use, and along each in the direction of its curve.
   std::span<const EdgeRun> of(std::size_t edge) const {
@@ -75,9 +76,9 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
     const auto place = [](const std::pair<std::uint32_t, std::uint32_t>& of) { return of.first; };
     for (const auto& [of, run] : std::ranges::equal_range(on_sides_, border, {}, place)) visit(runs_[run]);
   }
-  std::span<const TrimPiece> pieces(const EdgeRun& run) const;
+  TESSERA_INTERNAL_EXPORT std::span<const TrimPiece> pieces(const EdgeRun& run) const;
   /// The curve of a piece's loop, and the edge along it.
-  CurveAlongEdge curve(std::uint32_t face, const TrimPiece& piece) const;
+  TESSERA_INTERNAL_EXPORT CurveAlongEdge curve(std::uint32_t face, const TrimPiece& piece) const;
   CurveAlongEdge curve(const EdgeRun& run) const { return curve(run.face, pieces(run).front()); }
   const PatchEdges& edges() const { return *edges_; }
 

@@ -1,0 +1,47 @@
+#include "ray/scene/exact_options.h"
+
+#include <cmath>
+#include <string>
+
+#include "base/text.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+/// Written so that NaN fails.
+bool holds(const Box3& box, const Box3& inside) {
+  const Vec3 &a = box.lower, &b = inside.lower, &c = inside.upper, &d = box.upper;
+  return a.x <= b.x && a.y <= b.y && a.z <= b.z && c.x <= d.x && c.y <= d.y && c.z <= d.z;
+}
+
+std::string text_of(const Box3& box) { return text(box.lower) + " to " + text(box.upper); }
+
+}  // namespace
+
+Status check_exact(const RaySceneOptions& options) {
+  if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
+    return Status(
+        StatusCode::invalid_argument,
+        "a patch of an exact ray scene is cut into 1, 2, 4 or 8 pieces per side, not " + std::to_string(pieces));
+  }
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance))) {
+    return Status(StatusCode::invalid_argument,
+                  "the tolerance of a ray scene must be a finite length above 0, not " + text(*options.tolerance));
+  }
+  if (options.rebuild_after < 0) {
+    return Status(StatusCode::invalid_argument, "the number of refits until a rebuild is " +
+                                                    std::to_string(options.rebuild_after) +
+                                                    ", it must be at least 1, or 0 for none");
+  }
+  return {};
+}
+
+Result<Box3> frame_box(const RaySceneOptions& options, const Box3& box) {
+  if (!options.box) return box;
+  if (!holds(*options.box, box))
+    return Status(StatusCode::invalid_argument, "the box of the ray scene, " + text_of(*options.box) +
+                                                    ", must contain that of the patch set, " + text_of(box));
+  return *options.box;
+}
+
+}  // namespace tessera::inline abi_0_1
