@@ -1,10 +1,14 @@
-// Rules of the house that a text search can check: the length of files and functions, and where instruction sets may be
-// named.
+// Rules of the house that a text search can check: the length of files and functions, the names of types, and where
+// instruction sets may be named.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "house/function_lengths.h"
 #include "house/tree.h"
@@ -97,6 +101,45 @@ bool names_instructions(const std::string& text) {
   static const std::regex flag(
       R"re((^|[\s"';=])-m(arch|tune|cpu|sse|ssse|avx|fma|bmi|f16c|popcnt|lzcnt|adx|prefer-vector)[\w.=-]*)re");
   return std::regex_search(text, flag);
+}
+
+/// The types that a file defines at the level of a namespace which other files may open too, by their full names.
+std::vector<std::string> type_names(const std::string& text) {
+  const std::regex opens(R"(namespace ?(.*) \{)"), defines(R"((?:class|struct|union) (\w+)(?: final)?(?: :.*| ?\{.*))");
+  std::vector<std::string> spaces, names;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch found;
+    if (std::regex_match(line, found, opens)) spaces.push_back(found[1]);
+    if (line.starts_with("}  // namespace") && !spaces.empty()) spaces.pop_back();
+    if (!std::regex_match(line, found, defines) || std::ranges::find(spaces, "") != spaces.end()) continue;
+    std::string name;
+    for (const std::string& space : spaces) name += space + "::";
+    names.push_back(name + found[1].str());
+  }
+  return names;
+}
+
+TEST(House, SearchForTypesFindsThem) {
+  EXPECT_EQ(type_names(
+                "struct A;\nnamespace a::b {\nclass C : B {\n  struct D {\n};\n}  // namespace a::b\nstruct E final {\n"
+                "namespace a {\nnamespace {\nstruct F {\n}  // namespace\nunion G {};\n"),
+            (std::vector<std::string>{"a::b::C", "E", "a::G"}));
+}
+
+// Two types of one name are one to the linker: it keeps the inline functions of one of them, such as its destructor.
+TEST(House, NoTwoTypesShareAName) {
+  std::map<std::string, std::string> files;
+  for (const std::string& path : files_under("engine")) {
+    // Fragments stand in the namespaces of the files that include them, and a processor has one of these headers.
+    if (path.ends_with(".inl.h") || path.ends_with("_neon64.h") || (!path.ends_with(".h") && !path.ends_with(".cpp")))
+      continue;
+    for (const std::string& name : type_names(read_text(path))) {
+      const auto [known, is_new] = files.emplace(name, path);
+      EXPECT_TRUE(is_new) << name << " is defined in " << known->second << " and in " << path;
+    }
+  }
+  EXPECT_GT(files.size(), 300u) << "the search finds too few types";
 }
 
 TEST(House, SearchForInstructionFlagsFindsThem) {

@@ -139,14 +139,14 @@ void write_patch(const BezierPatch& patch, const SceneFrame& frame, double* net)
   }
 }
 
-void PatchCutter::start(const BezierPatch& patch) {
+void LeafCutter::start(const BezierPatch& patch) {
   patch_ = &patch;
   cuts_ = {};
   nets_.resize(values());
   write_patch(patch, *frame_, nets_.data());
 }
 
-void PatchCutter::halve(bool along_u) {
+void LeafCutter::halve(bool along_u) {
   const std::size_t pieces = cuts_.pieces(), columns = std::size_t{1} << cuts_.v;
   const NetShape<0, 0> shape{patch_->degree_u(), patch_->degree_v()};
   const int components = patch_->is_rational() ? 4 : 3;
@@ -162,12 +162,12 @@ void PatchCutter::halve(bool along_u) {
   ++(along_u ? cuts_.u : cuts_.v);
 }
 
-void PatchCutter::cut(const Cuts& cuts) {
+void LeafCutter::cut(const Cuts& cuts) {
   while (cuts_.u < cuts.u) halve(true);
   while (cuts_.v < cuts.v) halve(false);
 }
 
-const double* PatchCutter::part_of(std::size_t piece, const Domain& rectangle) {
+const double* LeafCutter::part_of(std::size_t piece, const Domain& rectangle) {
   const double columns = std::ldexp(1.0, cuts_.v), rows = std::ldexp(1.0, cuts_.u);
   const auto row = static_cast<double>(piece >> cuts_.v);
   const auto column = static_cast<double>(piece & ((std::size_t{1} << cuts_.v) - 1));
@@ -181,7 +181,7 @@ const double* PatchCutter::part_of(std::size_t piece, const Domain& rectangle) {
 }
 
 /// Returns whether more than one piece in ten bends by more than `max_bend`, and along which parameter.
-bool PatchCutter::bends(double max_bend, bool& along_u) const {
+bool LeafCutter::bends(double max_bend, bool& along_u) const {
   alignas(kernel::RayLeaf) std::byte room[kernel::ray_leaf_bytes(true)];
   const NetShape<0, 0> shape{patch_->degree_u(), patch_->degree_v()};
   /// Counts of pieces and of their bends.
@@ -207,7 +207,7 @@ bool PatchCutter::bends(double max_bend, bool& along_u) const {
   return 10 * which.bent > which.count;
 }
 
-Cuts PatchCutter::flatten(int halvings, double max_bend) {
+Cuts LeafCutter::flatten(int halvings, double max_bend) {
   const NetShapes net = measure(*patch_);
   const Cuts by_net = cuts_by_net(net, halvings);
   if (is_surely_flat(*patch_, net, max_bend)) return by_net;

@@ -20,9 +20,9 @@ struct Cuts {
 void write_patch(const BezierPatch& patch, const SceneFrame& frame, double* net);
 
 /// A patch in pieces that are halved repeatedly. Memory is reused from patch to patch.
-class PatchCutter {
+class LeafCutter {
  public:
-  explicit PatchCutter(const SceneFrame& frame) : frame_(&frame) {}
+  explicit LeafCutter(const SceneFrame& frame) : frame_(&frame) {}
 
   /// Starts with the whole patch, which must live until the next start.
   void start(const BezierPatch& patch);

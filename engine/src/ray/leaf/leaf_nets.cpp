@@ -60,7 +60,7 @@ Status LeafNets::plan(const SetView& set, const SceneFrame& frame, const Flatnes
   frame_ = frame;
   std::vector<Cuts> cuts(set.patch_count());
   const Status status = parallel_for(cuts.size(), patches_per_task, execution, [&](std::size_t begin, std::size_t end) {
-    PatchCutter cutter(frame_);
+    LeafCutter cutter(frame_);
     for (std::size_t k = begin; k < end; ++k) {
       cutter.start(set.patch(k));
       cuts[k] = cutter.flatten(flatness.halvings, flatness.max_bend);
@@ -89,7 +89,7 @@ std::size_t LeafNets::first_leaf(std::uint32_t patch) const {
   return static_cast<std::size_t>(std::ranges::lower_bound(leaves_, patch, {}, &Leaf::patch) - leaves_.begin());
 }
 
-void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, PatchCutter& cutter) {
+void LeafNets::cut(const BezierPatch& patch, std::uint32_t index, LeafCutter& cutter) {
   const std::size_t first = first_leaf(index);
   const NetShape<0, 0> shape{patch.degree_u(), patch.degree_v()};
   const Cuts cuts{leaves_[first].halvings_u, leaves_[first].halvings_v};
@@ -149,14 +149,14 @@ Status LeafNets::make(const SetView& set, const Execution& execution) {
   boxes_.resize(leaves_.size());
   local_.resize(leaves_.size() * local_bytes_);
   return parallel_for(set.patch_count(), patches_per_task, execution, [&](std::size_t begin, std::size_t end) {
-    PatchCutter cutter(frame_);
+    LeafCutter cutter(frame_);
     for (std::size_t k = begin; k < end; ++k) cut(set.patch(k), static_cast<std::uint32_t>(k), cutter);
   });
 }
 
 Status LeafNets::update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution) {
   return parallel_for(patches.size(), patches_per_task, execution, [&](std::size_t begin, std::size_t end) {
-    PatchCutter cutter(frame_);
+    LeafCutter cutter(frame_);
     for (const std::uint32_t patch : patches.subspan(begin, end - begin)) cut(set.patch(patch), patch, cutter);
   });
 }

@@ -40,11 +40,11 @@ struct Leaf {
 /// The flatness that pieces must have.
 struct Flatness {
   int halvings = 0;     ///< minimum for each side
-  double max_bend = 1;  ///< see PatchCutter::flatten
+  double max_bend = 1;  ///< see LeafCutter::flatten
 };
 
 struct Cuts;
-class PatchCutter;
+class LeafCutter;
 
 class LeafNets {
  public:
@@ -82,7 +82,7 @@ class LeafNets {
  private:
   std::size_t first_leaf(std::uint32_t patch) const;
   void set_leaves(const BezierPatch& patch, std::uint32_t index, const Cuts& cuts, std::size_t first);
-  void cut(const BezierPatch& patch, std::uint32_t index, PatchCutter& cutter);
+  void cut(const BezierPatch& patch, std::uint32_t index, LeafCutter& cutter);
 
   SceneFrame frame_;
   std::vector<Leaf> leaves_;

@@ -112,7 +112,7 @@ class LeafSearch {
     const RootCertificate certificate = certify(x, y, shape_.m(), shape_.n(), rounding_, extent.heaviest);
     RootBox within;
     if (certificate.regular) {
-      constexpr NetPoint middle{0.5, 0.5};
+      constexpr NetParameters middle{0.5, 0.5};
       const NetValue f = value(net, middle);
       within = roots_near(certificate, f, middle, 0.5);
       if (within.empty()) return;
@@ -128,7 +128,7 @@ class LeafSearch {
     halve(slot, x, y, extent.heaviest);
   }
 
-  NetValue value(const double* net, NetPoint at) const { return evaluate<Rational>(shape_, net, at.u, at.v); }
+  NetValue value(const double* net, NetParameters at) const { return evaluate<Rational>(shape_, net, at.u, at.v); }
 
   /// Returns whether every point lies within the tolerance of the ray, with s in its range or at a single place. Roots
   /// found before do not count, so that the part is the same whichever is searched first.
@@ -156,11 +156,11 @@ class LeafSearch {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr int finest = 16;
     const int rate = query_.trims == nullptr ? 1 : finest;
-    NetPoint nearest;
+    NetParameters nearest;
     double s = infinity;
     for (int i = 0; i <= rate; ++i) {
       for (int j = 0; j <= rate; ++j) {
-        const NetPoint at{double(i) / rate, double(j) / rate};
+        const NetParameters at{double(i) / rate, double(j) / rate};
         if (rate > 1 && !is_kept(slot, at)) continue;
         const double here = value(space_.net(slot), at).s();
         if (here >= query_.line.near ? here < s || s < query_.line.near : s == infinity) s = here, nearest = at;
@@ -170,7 +170,7 @@ class LeafSearch {
   }
 
   /// Whether the loops keep a point of a part.
-  bool is_kept(int slot, NetPoint at) const {
+  bool is_kept(int slot, NetParameters at) const {
     const SearchBox& box = space_.box(slot);
     LeafRoot point;
     point.patch = leaf_.patch;
@@ -181,10 +181,10 @@ class LeafSearch {
   /// Takes the point nearest to the ray if it is a root within the tolerance. Other points of the part may come before
   /// it.
   bool take_closest_point(int slot, double from) {
-    NetPoint at{0.5, 0.5};
+    NetParameters at{0.5, 0.5};
     NetValue f = value(space_.net(slot), at);
     for (int step = 0; step < max_newton_steps && f.residual() > rounding_; ++step) {
-      const NetPoint next = bounded_step(f, at);
+      const NetParameters next = bounded_step(f, at);
       const NetValue there = value(space_.net(slot), next);
       if (!(there.residual() < f.residual())) break;
       at = next, f = there;
@@ -193,7 +193,7 @@ class LeafSearch {
   }
 
   /// Decides a box with at most one root. Returns false if it could not.
-  bool decide(int slot, const RootCertificate& certificate, NetValue f, NetPoint at) {
+  bool decide(int slot, const RootCertificate& certificate, NetValue f, NetParameters at) {
     const Outcome outcome = solve(space_.net(slot), certificate, f, at);
     if (outcome == Outcome::found) take(slot, at, is_root(f), no_part);
     return outcome != Outcome::open;
@@ -201,12 +201,12 @@ class LeafSearch {
 
   bool is_root(const NetValue& f) const { return f.residual() <= 4 * rounding_; }
 
-  Outcome solve(const double* net, const RootCertificate& certificate, NetValue& f, NetPoint& at) const {
+  Outcome solve(const double* net, const RootCertificate& certificate, NetValue& f, NetParameters& at) const {
     const auto excluded = [&] {
       return roots_near(certificate, f, at, std::min(1.0, root_distance(certificate, f))).empty();
     };
     for (int step = 0; step < max_newton_steps && f.residual() > rounding_; ++step) {
-      const NetPoint next = bounded_step(f, at);
+      const NetParameters next = bounded_step(f, at);
       const double moved = std::max(std::abs(next.u - at.u), std::abs(next.v - at.v));
       at = next, f = value(net, at);
       if (f.residual() > tolerance_ && excluded()) return Outcome::none;
@@ -214,7 +214,7 @@ class LeafSearch {
     }
     if (is_root(f)) return Outcome::found;
     const NetValue nearest = f;
-    const NetPoint there = at;
+    const NetParameters there = at;
     const bool touches = f.residual() <= tolerance_;
     // The clamped contraction converges to the root, or proves that there is none. In the second case a point within
     // the tolerance is not the box's root, and touches.
@@ -230,12 +230,12 @@ class LeafSearch {
     return Outcome::found;
   }
 
-  bool take(int slot, NetPoint at, bool certified, double from) {
+  bool take(int slot, NetParameters at, bool certified, double from) {
     const SearchBox& box = space_.box(slot);
-    NetPoint in_leaf{box.u0 + at.u * box.du, box.v0 + at.v * box.dv};
+    NetParameters in_leaf{box.u0 + at.u * box.du, box.v0 + at.v * box.dv};
     NetValue f = value(space_.net(0), in_leaf);
     for (int step = 0; step < 3 && certified; ++step) {  // the leaf's own net has the least rounding
-      const NetPoint next = bounded_step(f, in_leaf);
+      const NetParameters next = bounded_step(f, in_leaf);
       const NetValue there = value(space_.net(0), next);
       if (!(there.residual() < f.residual())) break;
       in_leaf = next, f = there;
@@ -285,7 +285,7 @@ class LeafSearch {
     const EdgeOn seen(x, y, std::max(shape_.m(), shape_.n()), tolerance_ * heaviest, rounding_ * heaviest);
     if (!seen.grows()) return false;
     const double* const net = space_.net(slot);
-    const RootBox within = seen.roots(shape_, net, [&](NetPoint at) { return value(net, at); });
+    const RootBox within = seen.roots(shape_, net, [&](NetParameters at) { return value(net, at); });
     return within.empty() || narrow(slot, within);
   }
 

@@ -9,14 +9,14 @@
 
 namespace tessera::inline abi_0_1 {
 
-struct NetPoint {
+struct NetParameters {
   double u = 0, v = 0;
 };
 
 namespace bounded {
 
 /// Finds the best point of one side of the square for the linear model; true if it beats `best`.
-inline bool try_side(const NetValue& f, NetPoint from, bool fixed_u, double at, NetPoint& to, double& best) {
+inline bool try_side(const NetValue& f, NetParameters from, bool fixed_u, double at, NetParameters& to, double& best) {
   const double across = at - (fixed_u ? from.u : from.v);
   const double x = f.x + across * (fixed_u ? f.xu : f.xv), y = f.y + across * (fixed_u ? f.yu : f.yv);
   const double dx = fixed_u ? f.xv : f.xu, dy = fixed_u ? f.yv : f.yu;
@@ -25,7 +25,7 @@ inline bool try_side(const NetValue& f, NetPoint from, bool fixed_u, double at, 
   const double rx = x + (end - start) * dx, ry = y + (end - start) * dy, residual = rx * rx + ry * ry;
   if (!(residual < best)) return false;
   best = residual;
-  to = fixed_u ? NetPoint{at, end} : NetPoint{end, at};
+  to = fixed_u ? NetParameters{at, end} : NetParameters{end, at};
   return true;
 }
 
@@ -34,7 +34,7 @@ inline bool try_side(const NetValue& f, NetPoint from, bool fixed_u, double at, 
 /// Returns the point of [0,1]^2 where the linear model f + J d at `from` is smallest. A ray next to a border needs this
 /// point and not Newton's point moved to the square. Where the derivatives are nearly parallel across the ray, the
 /// moved point has an error of the rounding divided by the sine of their angle, the closest one only of the rounding.
-inline NetPoint bounded_step(const NetValue& f, NetPoint from) {
+inline NetParameters bounded_step(const NetValue& f, NetParameters from) {
   constexpr double parallel = 1e-9;  // sine of the angle
   const double determinant = f.xu * f.yv - f.xv * f.yu;
   const double uu = f.xu * f.xu + f.yu * f.yu, vv = f.xv * f.xv + f.yv * f.yv;
@@ -48,9 +48,9 @@ inline NetPoint bounded_step(const NetValue& f, NetPoint from) {
     const double det = a * c - b * b;
     if (det > 0) du = -(gu * c - gv * b) / det, dv = -(gv * a - gu * b) / det;
   }
-  const NetPoint to{from.u + du, from.v + dv};
+  const NetParameters to{from.u + du, from.v + dv};
   if (to.u >= 0 && to.u <= 1 && to.v >= 0 && to.v <= 1) return to;
-  NetPoint best = from;
+  NetParameters best = from;
   double residual = std::numeric_limits<double>::infinity();
   for (const double side : {0.0, 1.0}) {
     bounded::try_side(f, from, true, side, best, residual);

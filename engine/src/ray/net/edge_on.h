@@ -48,7 +48,7 @@ class EdgeOn {
   /// Bounds the roots. `value` returns the net's value and derivatives at a point.
   template <class Shape, class Value>
   RootBox roots(const Shape& shape, const double* net, const Value& value) const {
-    NetPoint at{0.5, 0.5};
+    NetParameters at{0.5, 0.5};
     NetValue f = value(at);
     double& p0 = by_u_ ? at.u : at.v;
     p0 = std::clamp(0.5 - (a_ * f.x + b_ * f.y) / (by_u_ ? a_ * f.xu + b_ * f.yu : a_ * f.xv + b_ * f.yv), 0.0, 1.0);

@@ -100,7 +100,7 @@ struct RootBox {
 
 /// Bounds the roots from the value at one point: every root is within `distance` of the point, and the image of the
 /// point within row * distance of the root.
-inline RootBox roots_near(const RootCertificate& certificate, const NetValue& f, NetPoint at, double distance) {
+inline RootBox roots_near(const RootCertificate& certificate, const NetValue& f, NetParameters at, double distance) {
   constexpr double epsilon = 8 * std::numeric_limits<double>::epsilon();
   const std::array<double, 2> step = certificate.step(f);
   RootBox box;

@@ -8,15 +8,15 @@ namespace tessera::inline abi_0_1 {
 LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
                         double u, double v) {
   constexpr int most = 20;
-  const auto at = [&](NetPoint point) {
+  const auto at = [&](NetParameters point) {
     const FirstOrder there = first_order(patch, point.u, point.v, frame.centre);
     return FirstOrder{frame.scale * there.position, frame.scale * there.du, frame.scale * there.dv};
   };
-  NetPoint best{u, v};
+  NetParameters best{u, v};
   FirstOrder point = at(best);
   NetValue f = seen(point, line);
   for (int step = 0; step < most; ++step) {
-    const NetPoint next = bounded_step(f, best);
+    const NetParameters next = bounded_step(f, best);
     const FirstOrder there = at(next);
     const NetValue value = seen(there, line);
     if (!(value.residual() < f.residual())) break;
