@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -55,6 +56,9 @@ class Closer {
       for (const std::uint32_t patch : face.patches)
         if (patch != no_id) bases_[patch + 1] = boundary_count(patch);
     for (std::size_t k = 1; k < bases_.size(); ++k) bases_[k] += bases_[k - 1];
+    zeros_.assign(bases_.begin(), bases_.end());
+    for (std::size_t patch = 0; patch < divisions_.size(); ++patch)
+      if (!divisions_[patch].empty) zeros_[patch] -= static_cast<std::uint32_t>(divisions_[patch].inner_count());
     count_ = bases_.back() + static_cast<std::uint32_t>(segments_.inserted().size());
     is_used_.assign(count_, 0);
     of_points_.reserve(points_.vertices.size());
@@ -71,11 +75,8 @@ class Closer {
     return divisions_[patch].empty ? 0 : static_cast<std::uint32_t>(divisions_[patch].ring_count());
   }
   std::uint32_t number(const PatchVertex& vertex) const {
-    const bool is_whole = !divisions_[vertex.patch].empty;
-    return vertex.vertex & PatchVertex::inserted
-               ? bases_.back() + (vertex.vertex ^ PatchVertex::inserted)
-               : bases_[vertex.patch] + vertex.vertex -
-                     (is_whole ? static_cast<std::uint32_t>(divisions_[vertex.patch].inner_count()) : 0);
+    return vertex.vertex & PatchVertex::inserted ? bases_.back() + (vertex.vertex ^ PatchVertex::inserted)
+                                                 : zeros_[vertex.patch] + vertex.vertex;
   }
 
   /// Finds the faces' own points of all vertices.
@@ -104,7 +105,7 @@ class Closer {
       if (cut) {
         own_[k] = points.at(cut->vertices[k - begin]);
       } else {
-        const Division::Parameters at = divisions_[patch].parameters(divisions_[patch].inner_count() + k - begin);
+        const Division::Parameters at = divisions_[patch].parameters(k - zeros_[patch]);
         own_[k] = points.at({at.u, at.v});
       }
     }
@@ -114,6 +115,7 @@ class Closer {
   void find_open(double max_gap) {
     is_open_.assign(set_.edges->edges.size(), 0);
     widths_.assign(is_open_.size(), 0);
+    if (max_gap == std::numeric_limits<double>::infinity()) return;
     for (const EdgePoint& point : points_.points) {
       Box3 box;
       for (std::uint32_t k = 0; k < point.count; ++k) box.extend(own_[of_points_[point.first + k]]);
@@ -194,55 +196,48 @@ class Closer {
   }
 
   void list_members() {
-    // Vertices where no faces meet stay: they may be welded.
-    std::vector<std::uint32_t> places(count_ + set_.edges->vertex_count, none);
-    std::vector<std::uint8_t> meets(places.size(), 0);
-    for (const EdgePoint& point : points_.points)
-      if (runs_.meet(point.edge) && !is_open_[point.edge]) meets[sets_->find(of_points_[point.first]).member] = 1;
-    places_.assign(count_, none);
+    // Vertices where no faces meet stay: they may be welded. A place gets the number of its root first.
     std::vector<std::uint32_t>& first = out_.first_members;
     first.assign(1, 0);
-    const auto for_vertices = [&](auto visit) {
-      for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) {
-        const std::size_t inner = divisions_[patch].empty ? 0 : divisions_[patch].inner_count();
-        for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k)
-          if (is_used_[k]) visit(k, patch, static_cast<std::uint32_t>(inner) + k - bases_[patch]);
-      }
-      const std::span<const InsertedVertex> inserted = segments_.inserted();
-      for (std::uint32_t k = 0; k < inserted.size(); ++k)
-        if (resolved_[k] != none) visit(bases_.back() + k, inserted[k].patch, resolved_[k]);
-    };
-    for_vertices([&](std::uint32_t k, std::uint32_t, std::uint32_t) {
-      const std::uint32_t root = sets_->find(k).member;
-      if (!meets[root]) return;
-      if (places[root] == none) places[root] = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
-      places_[k] = places[root];
-      ++first[places_[k] + 1];
-    });
+    places_.assign(count_ + set_.edges->vertex_count, none);
+    for (const EdgePoint& point : points_.points) {
+      if (is_open_[point.edge] || !runs_.meet(point.edge)) continue;
+      std::uint32_t& place = places_[sets_->find(of_points_[point.first]).member];
+      if (place == none) place = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
+    }
+    for (std::uint32_t k = 0; k < count_; ++k) {
+      if (!is_used_[k] || (k >= bases_.back() && resolved_[k - bases_.back()] == none)) continue;
+      places_[k] = places_[sets_->find(k).member];
+      if (places_[k] != none) ++first[places_[k] + 1];
+    }
     for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
     out_.members.resize(first.back());
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for_vertices([&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
+    const auto put = [&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
       if (places_[k] != none) out_.members[next[places_[k]]++] = {patch, vertex};
-    });
+    };
+    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch)
+      for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k) put(k, patch, k - zeros_[patch]);
+    const std::span<const InsertedVertex> inserted = segments_.inserted();
+    for (std::uint32_t k = 0; k < inserted.size(); ++k)
+      if (resolved_[k] != none) put(bases_.back() + k, inserted[k].patch, resolved_[k]);
   }
 
   void measure() {
     std::vector<Box3> boxes(out_.first_members.size() - 1);
     for (std::uint32_t k = 0; k < count_; ++k)
-      if (places_[k] != none) boxes[places_[k]].extend(own_[k]);
+      if (const std::uint32_t place = places_[k]; place != none) boxes[place].extend(own_[k]);
+    out_.places.reserve(boxes.size());
+    for (const Box3& box : boxes) out_.places.push_back(box.centre());
     out_.gaps.assign(set_.edges->edges.size(), 0);
     for (const EdgePoint& point : points_.points) {
       if (is_open_[point.edge]) continue;
-      for (std::uint32_t k = 0; k < point.count; ++k) {
-        const std::uint32_t vertex = of_points_[point.first + k];
-        if (places_[vertex] == none) continue;
-        const double gap = length(own_[vertex] - boxes[places_[vertex]].centre());
-        out_.gap = std::max(out_.gap, gap);
-        out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
-      }
+      double gap = 0;
+      for (const std::uint32_t vertex : std::span(of_points_).subspan(point.first, point.count))
+        if (places_[vertex] != none) gap = std::max(gap, length(own_[vertex] - out_.places[places_[vertex]]));
+      out_.gap = std::max(out_.gap, gap);
+      out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
     }
-    for (const Box3& box : boxes) out_.places.push_back(box.centre());
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
       if (is_open_[edge]) out_.gaps[edge] = rounded_up(widths_[edge] / 2);
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
@@ -263,6 +258,7 @@ class Closer {
   const EdgeRuns& runs_;
   EdgePoints points_;
   std::vector<std::uint32_t> bases_;  ///< by patch: the number of its first vertex; then that of the first inserted one
+  std::vector<std::uint32_t> zeros_;  ///< by patch: the number that its vertex 0 would have, modulo 2^32
   std::uint32_t count_ = 0;
   std::vector<std::uint8_t> is_used_;
   std::vector<std::uint32_t> of_points_;

@@ -6,15 +6,23 @@ namespace tessera::inline abi_0_1 {
 
 void PatchPoints::begin_row(double u) {
   row_u_ = u;
-  std::array<double, max_degree + 1> of_u, lowered;
+  std::array<double, max_degree + 1> of_u;
   bernstein_values(net_.degree_u, u, of_u.data());
+  for (int j = 0; j <= net_.degree_v; ++j) {
+    Homogeneous row{0, 0, 0, 0};
+    for (int i = 0; i <= net_.degree_u; ++i) row = row + of_u[static_cast<std::size_t>(i)] * net_.at(i, j);
+    row_[static_cast<std::size_t>(j)] = row;
+  }
+}
+
+void PatchPoints::begin_row_du(double u) {
+  row_du_u_ = u;
+  std::array<double, max_degree + 1> lowered;
   bernstein_values(net_.degree_u - 1, u, lowered.data());
   for (int j = 0; j <= net_.degree_v; ++j) {
-    Homogeneous row{0, 0, 0, 0}, du{0, 0, 0, 0};
-    for (int i = 0; i <= net_.degree_u; ++i) row = row + of_u[static_cast<std::size_t>(i)] * net_.at(i, j);
+    Homogeneous du{0, 0, 0, 0};
     for (int i = 0; i < net_.degree_u; ++i)
       du = du + lowered[static_cast<std::size_t>(i)] * (net_.at(i + 1, j) - net_.at(i, j));
-    row_[static_cast<std::size_t>(j)] = row;
     row_du_[static_cast<std::size_t>(j)] = net_.degree_u * du;
   }
 }
@@ -35,6 +43,7 @@ Vec3 PatchPoints::at(const ParameterPoint& local) {
 // `rounding`, and the direction by less than |r_u| + |r_v| of that over |r_u x r_v|.
 Vec3 PatchPoints::normal(const ParameterPoint& local) {
   if (local.u != row_u_) begin_row(local.u);
+  if (local.u != row_du_u_) begin_row_du(local.u);
   const auto n = static_cast<std::size_t>(net_.degree_v);
   std::array<double, max_degree + 1> of_v, lowered;
   bernstein_values(net_.degree_v, local.v, of_v.data());

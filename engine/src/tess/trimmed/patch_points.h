@@ -26,12 +26,13 @@ class PatchPoints {
  private:
   using Row = std::array<Homogeneous, max_degree + 1>;
   void begin_row(double u);
+  void begin_row_du(double u);
 
   const BezierPatch& patch_;
   Vec3 origin_;
   HomogeneousNet net_;
-  double row_u_ = std::numeric_limits<double>::quiet_NaN();  ///< the u of `row_` and `row_du_`
-  Row row_, row_du_;  ///< control points of the line u = row_u_, their u-derivatives
+  double row_u_ = std::numeric_limits<double>::quiet_NaN(), row_du_u_ = row_u_;  ///< the u of `row_`, and of `row_du_`
+  Row row_, row_du_;  ///< control points of the line u = const, their u-derivatives
 };
 
 }  // namespace tessera::inline abi_0_1
