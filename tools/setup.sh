@@ -29,7 +29,8 @@ fail() {
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libtinygltf-dev zlib1g-dev libpng-dev libopenexr-dev)
 cad_packages=(libocct-data-exchange-dev)
-test_packages=("${cad_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev python3 python3-yaml valgrind)
+test_packages=("${cad_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev python3 python3-numpy
+  python3-pytest python3-yaml valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)

@@ -1,0 +1,68 @@
+"""Tessera: parametric surfaces to points, meshes and ray hits, as arrays of NumPy.
+
+>>> import tessera as ts
+>>> patches = ts.read(goblet).patches()
+>>> mesh = patches.tessellate(tolerance=1e-3)
+>>> mesh.vertices.dtype, mesh.faces.dtype
+(dtype('float32'), dtype('uint32'))
+"""
+
+from ._calls import threads
+from . import _library
+from .assemblies import Assembly
+from .errors import (
+    ArgumentError,
+    ArgumentTypeError,
+    CancelledError,
+    Error,
+    FileError,
+    OutOfMemoryError,
+    StateError,
+    UnsupportedError,
+)
+from .jets import Jets
+from .limits import Limits, Measurement, limits, measure
+from .meshes import Mesh, MeshReport, View
+from .models import Instance, Model, Spline, Surface, bezier, model, nurbs, parse, read
+from .patches import Patch, PatchSet
+from .rays import HIT, INVALID_RAY, MISS, Hits, Scene
+
+_number = _library.library.tsr_version()
+__version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
+
+__all__ = [
+    "HIT",
+    "INVALID_RAY",
+    "MISS",
+    "ArgumentError",
+    "ArgumentTypeError",
+    "Assembly",
+    "CancelledError",
+    "Error",
+    "FileError",
+    "Hits",
+    "Instance",
+    "Jets",
+    "Limits",
+    "Measurement",
+    "Mesh",
+    "MeshReport",
+    "Model",
+    "OutOfMemoryError",
+    "Patch",
+    "PatchSet",
+    "Scene",
+    "Spline",
+    "StateError",
+    "Surface",
+    "UnsupportedError",
+    "View",
+    "bezier",
+    "limits",
+    "measure",
+    "model",
+    "nurbs",
+    "parse",
+    "read",
+    "threads",
+]

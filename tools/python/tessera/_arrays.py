@@ -1,0 +1,86 @@
+"""Arrays of NumPy as records of the C library: checked, without a copy where the memory suits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._library import In, Out
+from .errors import ArgumentError, ArgumentTypeError
+
+
+def array_of(name: str, value: Any, dtype: Any = np.float64) -> np.ndarray:
+    """Returns numbers as an array of ``dtype``; the same memory if it has that type. Takes DLPack, too."""
+    if not isinstance(value, np.ndarray) and hasattr(value, "__dlpack__"):
+        value = np.from_dlpack(value)
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ArgumentError(f"{name}: expected an array of numbers, found rows of several lengths") from error
+    wanted = np.dtype(dtype)
+    if array.dtype == wanted:
+        return array if array.flags.aligned else array.copy()
+    if array.dtype.kind not in ("fiu" if wanted.kind == "f" else "iu"):
+        raise ArgumentTypeError(f"{name}: expected {wanted} numbers, found dtype {array.dtype}")
+    if wanted.kind == "u" and array.size and (array.min() < 0 or array.max() > np.iinfo(wanted).max):
+        raise ArgumentError(f"{name}: expected numbers from 0 to {np.iinfo(wanted).max}")
+    return array.astype(wanted)
+
+
+def vectors_of(name: str, value: Any, dtype: Any = np.float64, components: int = 3) -> np.ndarray:
+    """Returns an array of shape (..., components)."""
+    array = array_of(name, value, dtype)
+    if array.ndim == 0 or array.shape[-1] != components:
+        raise ArgumentError(f"{name}: expected shape (..., {components}), found {array.shape}")
+    return array
+
+
+def records_of(array: np.ndarray, components: int) -> np.ndarray:
+    """Returns the records of an array, (n,) or (n, components); a copy if their strides do not suit."""
+    flat = array.reshape(-1) if components == 1 else array.reshape(-1, components)
+    # A stride of 0 stands for packed records.
+    return flat if all(stride > 0 for stride in flat.strides) else np.ascontiguousarray(flat)
+
+
+def _view(kind: Any, flat: np.ndarray) -> Any:
+    strides = flat.strides
+    component = strides[1] if len(strides) > 1 else 0
+    return kind(flat.__array_interface__["data"][0], len(flat), strides[0], component)
+
+
+def in_view(flat: np.ndarray) -> Any:
+    """Returns the tsr_in of records_of(); the array must be kept during the call."""
+    return _view(In, flat)
+
+
+def out_view(name: str, array: np.ndarray, dtype: Any, shape: tuple[int, ...], components: int) -> Any:
+    """Returns the tsr_out of an array that is checked: its type, its shape, and whether it can be written in place."""
+    check_output(name, array, dtype, shape if components == 1 else (*shape, components))
+    flat = array.view()
+    try:
+        flat.shape = (-1,) if components == 1 else (-1, components)
+    except AttributeError:
+        raise ArgumentError(f"{name}: the array is not contiguous: its records need one stride") from None
+    if flat.size and min(flat.strides) <= 0:
+        raise ArgumentError(f"{name}: the array has strides {array.strides}, expected positive ones")
+    return _view(Out, flat)
+
+
+def check_output(name: str, array: Any, dtype: Any, shape: tuple[int, ...]) -> None:
+    """Raises an error unless the array can be written with values of this type and shape."""
+    if not isinstance(array, np.ndarray):
+        raise ArgumentTypeError(f"{name}: expected an array of NumPy, found {type(array).__name__}")
+    if array.dtype != np.dtype(dtype):
+        raise ArgumentTypeError(f"{name}: expected dtype {np.dtype(dtype)}, found {array.dtype}")
+    if array.shape != shape:
+        raise ArgumentError(f"{name}: expected shape {shape}, found {array.shape}")
+    if not array.flags.writeable:
+        raise ArgumentError(f"{name}: the array is read-only")
+    if not array.flags.aligned:
+        raise ArgumentError(f"{name}: the array is not aligned")
+
+
+def address_of(array: np.ndarray | None) -> int | None:
+    """Returns where the memory of a packed array begins; None for None."""
+    return None if array is None else array.__array_interface__["data"][0]

@@ -1,0 +1,175 @@
+"""The C library: where it lies, and its structs and functions, declared from two tables as in tessera_c.h."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import pathlib
+
+# --- Structs ----------------------------------------------------------------------------------------------------------
+# Members in order, without struct_size, which begins all but two.
+_STRUCTS = {
+    "tsr_run": "int32 threads, int32 reserved, pointer cancel, pointer progress, pointer user",
+    "tsr_in": "pointer data, size count, int64 record, int64 component",
+    "tsr_out": "pointer data, size count, int64 record, int64 component",
+    "tsr_bspline": "int32 degree_u, int32 degree_v, size count_u, size count_v, pointer points, pointer weights, "
+    "pointer knots_u, pointer knots_v, size knot_count_u, size knot_count_v, string name",
+    "tsr_model_info": "uint64 surfaces, uint64 shapes, uint64 instances, uint64 warnings, uint64 trimmed",
+    "tsr_surface_info": "double domain[4], uint64 loops",
+    "tsr_instance_info": "uint64 shape, uint64 first_surface, double placement[12], float colour[4], int32 has_colour",
+    "tsr_set_options": "int64 shape, uint32 flags, uint32 reserved, double fit_tolerance",
+    "tsr_set_info": "uint64 patches, uint64 surfaces, uint64 cut_patches, uint64 memory_bytes, uint64 revision, "
+    "double low[3], double high[3], double origin[3], double fit_error, uint64 unused_loops",
+    "tsr_patch_info": "int32 degree_u, int32 degree_v, int32 is_rational, int32 is_cut, uint64 surface, "
+    "double domain[4]",
+    "tsr_jets": "int32 is_double, int32 reserved, tsr_out position, tsr_out du, tsr_out dv, tsr_out duu, tsr_out duv, "
+    "tsr_out dvv, tsr_out normal, tsr_out first_form, tsr_out second_form, tsr_out gaussian, tsr_out mean, "
+    "tsr_out first_curvature, tsr_out second_curvature, tsr_out first_direction, tsr_out second_direction",
+    "tsr_plan_options": "double tolerance, double angle, double pixels, double eye[3], double target[3], double up[3], "
+    "double field_of_view, double extent, double near_distance, int32 width, int32 height, int32 rate_u, "
+    "int32 rate_v, uint32 flags, uint32 reserved, double weld, double crease_angle, double max_gap, double spare, "
+    "uint64 max_triangles",
+    "tsr_plan_info": "uint64 vertices, uint64 triangles, uint64 quads, double tolerance, double bound, double gap, "
+    "double angle, double pixels, int32 is_proven, int32 has_normals, uint64 open_edges, uint64 crossed_patches",
+    "tsr_mesh": "tsr_out position, tsr_out normal, tsr_out parameter, tsr_out position_f64, pointer triangles, "
+    "pointer triangle_patches, pointer quads, pointer quad_patches, size triangle_count, size quad_count",
+    "tsr_mesh_report": "uint64 vertices, uint64 distinct_positions, uint64 triangles, uint64 quads, uint64 open_edges, "
+    "uint64 non_manifold_edges, uint64 inconsistent_edges, uint64 t_junctions, uint64 flipped_triangles, "
+    "uint64 degenerate_triangles, uint64 non_finite_vertices",
+    "tsr_scene_options": "double tolerance, int32 pieces, int32 is_editable",
+    "tsr_scene_info": "uint64 memory_bytes, double low[3], double high[3], double spawn_offset",
+    "tsr_rays": "int32 is_double, int32 reserved, tsr_in origin, tsr_in direction, tsr_in tnear, tsr_in tfar, "
+    "tsr_in spawn_offset",
+    "tsr_hits_out": "int32 is_double, int32 reserved, tsr_out kind, tsr_out flags, tsr_out surface, tsr_out patch, "
+    "tsr_out t, tsr_out uv, tsr_out patch_uv, tsr_out position, tsr_out normal, tsr_out du, tsr_out dv, "
+    "tsr_out residual",
+    "tsr_limits_info": "double float_operations_per_second, double double_operations_per_second, "
+    "double store_bytes_per_second",
+}
+_WITHOUT_SIZE = ("tsr_in", "tsr_out")
+
+# --- Functions --------------------------------------------------------------------------------------------------------
+# The result and the arguments: i int32, u uint32, s size_t, d double, z text, p a pointer of any kind, - nothing.
+_FUNCTIONS = {
+    "tsr_version": "u",
+    "tsr_last_message": "zp",
+    "tsr_status_name": "zi",
+    "tsr_retain": "ip",
+    "tsr_release": "ip",
+    "tsr_model_read": "ipzp",
+    "tsr_model_parse": "ipzsz",
+    "tsr_model_new": "ipps",
+    "tsr_model_join": "ippd",
+    "tsr_model_save": "ipz",
+    "tsr_model_describe": "ipp",
+    "tsr_model_text": "zpis",
+    "tsr_model_surface": "ipsp",
+    "tsr_model_instance": "ipsp",
+    "tsr_set_defaults": "-p",
+    "tsr_set_new": "ipppp",
+    "tsr_set_describe": "ipp",
+    "tsr_set_patch": "ipsppp",
+    "tsr_set_edit": "ippsps",
+    "tsr_set_grid": "ippspspp",
+    "tsr_set_evaluate": "ipppppp",
+    "tsr_plan_defaults": "-p",
+    "tsr_plan_new": "ipppp",
+    "tsr_plan_describe": "ipp",
+    "tsr_plan_write": "ippp",
+    "tsr_plan_update": "ippspsppp",
+    "tsr_mesh_check": "ipp",
+    "tsr_mesh_save": "ippz",
+    "tsr_model_save_meshes": "ipppsz",
+    "tsr_scene_defaults": "-p",
+    "tsr_scene_new": "ipppp",
+    "tsr_scene_refit": "ipp",
+    "tsr_scene_describe": "ipp",
+    "tsr_scene_closest": "ipppp",
+    "tsr_scene_occluded": "ipppp",
+    "tsr_scene_all": "ipppp",
+    "tsr_hits_read": "ipppp",
+    "tsr_limits": "isp",
+}
+
+_TYPES: dict[str, type] = {
+    "int32": ctypes.c_int32,
+    "uint32": ctypes.c_uint32,
+    "int64": ctypes.c_int64,
+    "uint64": ctypes.c_uint64,
+    "size": ctypes.c_size_t,
+    "double": ctypes.c_double,
+    "float": ctypes.c_float,
+    "pointer": ctypes.c_void_p,
+    "string": ctypes.c_char_p,
+}
+_LETTERS = {
+    "i": ctypes.c_int32,
+    "u": ctypes.c_uint32,
+    "s": ctypes.c_size_t,
+    "d": ctypes.c_double,
+    "z": ctypes.c_char_p,
+    "p": ctypes.c_void_p,
+    "-": None,
+}
+
+
+def _declare_struct(name: str, members: str) -> None:
+    fields = [] if name in _WITHOUT_SIZE else [("struct_size", ctypes.c_size_t)]
+    for member in members.split(", "):
+        kind, field = member.split(" ")
+        field, _, length = field.partition("[")
+        fields.append((field, _TYPES[kind] * int(length[:-1]) if length else _TYPES[kind]))
+    _TYPES[name] = type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+for _name, _members in _STRUCTS.items():
+    _declare_struct(_name, _members)
+
+
+def struct(name: str) -> ctypes.Structure:
+    """Returns a new struct of zeros with its struct_size."""
+    made = _TYPES[name]()
+    made.struct_size = ctypes.sizeof(made)
+    return made
+
+
+In, Out = _TYPES["tsr_in"], _TYPES["tsr_out"]
+
+
+def _places() -> list[pathlib.Path]:
+    """Returns the files that may be the library, the best first."""
+    named = os.environ.get("TESSERA_C_LIBRARY")
+    if named:
+        return [pathlib.Path(named)]
+    here = pathlib.Path(__file__).resolve().parent
+    places = [here / "lib" / "libtessera_c.so"]
+    # In the source tree: the build that was made last.
+    if (here.parents[2] / "engine" / "include").is_dir():
+        built = here.parents[2].glob("build/*/engine/libtessera_c.so")
+        places += sorted(built, key=lambda file: file.stat().st_mtime, reverse=True)
+    return places
+
+
+def _load() -> ctypes.CDLL:
+    places = _places()
+    for file in places:
+        if file.is_file():
+            library = ctypes.CDLL(str(file))
+            reader = file.resolve().parents[1] / "tools" / "tessera-cad-reader"
+            if reader.is_file():  # in a build; elsewhere the library finds the program itself
+                os.environ.setdefault("TESSERA_CAD_READER", str(reader))
+            break
+    else:
+        raise ImportError(
+            "tessera: found no libtessera_c.so; expected it at one of "
+            + ", ".join(str(file) for file in places)
+            + ". Build the target tessera_c_library, or name the file by TESSERA_C_LIBRARY"
+        )
+    for name, (result, *arguments) in _FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype = _LETTERS[result]
+        function.argtypes = [_LETTERS[argument] for argument in arguments]
+    return library
+
+
+library = _load()

@@ -1,0 +1,172 @@
+"""Points, derivatives and curvatures of surfaces as arrays."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arrays import array_of, in_view, out_view, records_of
+from ._calls import run
+from ._library import library, struct
+from .errors import ArgumentError
+
+if TYPE_CHECKING:
+    from .patches import PatchSet
+
+#: The quantities and their components.
+QUANTITIES = {
+    "position": 3,
+    "du": 3,
+    "dv": 3,
+    "duu": 3,
+    "duv": 3,
+    "dvv": 3,
+    "normal": 3,
+    "first_form": 3,
+    "second_form": 3,
+    "gaussian": 1,
+    "mean": 1,
+    "first_curvature": 1,
+    "second_curvature": 1,
+    "first_direction": 3,
+    "second_direction": 3,
+}
+_ORDERS = (
+    ("position",),
+    ("position", "du", "dv", "normal"),
+    tuple(QUANTITIES),
+)
+_LONG = 20_000  # points, below which a call is over at once
+
+
+class Jets:
+    """What an evaluation wrote: one array per quantity, of shape (..., 3) or (...); None if it was not wanted.
+
+    ``position``, ``du``, ``dv``, ``duu``, ``duv``, ``dvv``; ``normal``, unit, along du x dv; ``first_form`` (E, F, G) and
+    ``second_form`` (L, M, N); ``gaussian`` and ``mean`` curvature; ``first_curvature`` >= ``second_curvature`` and their unit
+    tangents ``first_direction``, ``second_direction``. Made of arrays of the caller, it is where to write to:
+    ``Jets(position=array)``.
+    """
+
+    position: np.ndarray | None = None
+    du: np.ndarray | None = None
+    dv: np.ndarray | None = None
+    duu: np.ndarray | None = None
+    duv: np.ndarray | None = None
+    dvv: np.ndarray | None = None
+    normal: np.ndarray | None = None
+    first_form: np.ndarray | None = None
+    second_form: np.ndarray | None = None
+    gaussian: np.ndarray | None = None
+    mean: np.ndarray | None = None
+    first_curvature: np.ndarray | None = None
+    second_curvature: np.ndarray | None = None
+    first_direction: np.ndarray | None = None
+    second_direction: np.ndarray | None = None
+
+    def __init__(self, **arrays: np.ndarray) -> None:
+        unknown = set(arrays) - set(QUANTITIES)
+        if unknown:
+            raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
+        self.__dict__.update(arrays)
+
+    @property
+    def quantities(self) -> list[str]:
+        """The names of the arrays."""
+        return list(self.__dict__)
+
+    @property
+    def nbytes(self) -> int:
+        return sum(array.nbytes for array in self.__dict__.values())
+
+    def __repr__(self) -> str:
+        shapes = (f"{name} {array.shape}" for name, array in self.__dict__.items())
+        return f"<Jets {', '.join(shapes)}>"
+
+
+def _new_jets(shape: tuple[int, ...], dtype: Any, derivatives: int, quantities: Sequence[str] | None) -> Jets:
+    if quantities is None:
+        if derivatives not in (0, 1, 2):
+            raise ArgumentError(f"derivatives is {derivatives}, expected 0, 1 or 2")
+        quantities = _ORDERS[derivatives]
+    arrays = {}
+    for name in quantities:
+        components = QUANTITIES.get(name)
+        if components is None:
+            raise ArgumentError(f"{name!r} is no quantity; there are {', '.join(QUANTITIES)}")
+        arrays[name] = np.empty(shape if components == 1 else (*shape, components), dtype)
+    return Jets(**arrays)
+
+
+def _jets_out(jets: Jets, shape: tuple[int, ...], dtype: Any) -> Any:
+    out = struct("tsr_jets")
+    out.is_double = np.dtype(dtype) == np.float64
+    for name, array in jets.__dict__.items():
+        setattr(out, name, out_view(name, array, dtype, shape, QUANTITIES[name]))
+    return out
+
+
+def evaluate_surface(
+    points: PatchSet,
+    surfaces: int,
+    surface: int,
+    u: Any,
+    v: Any,
+    derivatives: int,
+    quantities: Sequence[str] | None,
+    out: Jets | None,
+) -> Jets:
+    """Evaluates one surface of a set at scattered points; see Surface.evaluate()."""
+    u, v = array_of("u", u), array_of("v", v)
+    try:
+        u, v = (u, v) if u.shape == v.shape else np.broadcast_arrays(u, v)
+    except ValueError:
+        raise ArgumentError(f"u of shape {u.shape} and v of shape {v.shape} do not fit each other") from None
+    shape = u.shape
+    jets = _new_jets(shape, np.float64, derivatives, quantities) if out is None else out
+    to = _jets_out(jets, shape, np.float64)
+    u, v = records_of(u, 1), records_of(v, 1)
+    which = None if surfaces == 1 else np.full(len(u), surface, np.uint32)
+    of = None if which is None else in_view(which)
+    run(
+        library.tsr_set_evaluate,
+        points._handle,
+        None if of is None else ctypes.byref(of),
+        ctypes.byref(in_view(u)),
+        ctypes.byref(in_view(v)),
+        ctypes.byref(to),
+        is_long=len(u) > _LONG,
+    )
+    return jets
+
+
+def evaluate_grid(
+    patches: PatchSet,
+    u: Any,
+    v: Any,
+    dtype: Any,
+    derivatives: int,
+    quantities: Sequence[str] | None,
+    out: Jets | None,
+) -> Jets:
+    """Evaluates all patches of a set at a grid; see PatchSet.grid()."""
+    u, v = (np.ascontiguousarray(array_of(name, value)) for name, value in (("u", u), ("v", v)))
+    if u.ndim != 1 or v.ndim != 1:
+        raise ArgumentError(f"u and v: expected two lists of numbers, found shapes {u.shape} and {v.shape}")
+    shape = (len(patches), len(u), len(v))
+    jets = _new_jets(shape, dtype, derivatives, quantities) if out is None else out
+    to = _jets_out(jets, shape, dtype)
+    run(
+        library.tsr_set_grid,
+        patches._handle,
+        u.__array_interface__["data"][0],
+        len(u),
+        v.__array_interface__["data"][0],
+        len(v),
+        ctypes.byref(to),
+        is_long=len(patches) * len(u) * len(v) > _LONG,
+    )
+    return jets

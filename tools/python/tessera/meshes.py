@@ -1,0 +1,311 @@
+"""Meshes: their arrays, what is proven of them, and files."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arrays import address_of, out_view, vectors_of
+from ._calls import Handle, Progress, call, run
+from ._library import library, struct
+from .errors import ArgumentError, ArgumentTypeError, StateError
+
+if TYPE_CHECKING:
+    from .patches import PatchSet
+
+_RELATIVE, _SHARE, _QUADS, _FEWEST, _SMALLEST, _DOUBLE, _APART = (1 << k for k in range(7))
+
+
+@dataclass(frozen=True)
+class View:
+    """A camera. ``field_of_view``: radians, across the shorter side of the picture; ``extent``: parallel rays instead, and
+    the length that the shorter side shows; ``near_distance``: a thousandth of the target's distance by default."""
+
+    eye: Any
+    target: Any
+    up: Any = (0.0, 0.0, 1.0)
+    field_of_view: float | None = None
+    extent: float | None = None
+    near_distance: float | None = None
+    width: int = 1280
+    height: int = 800
+
+
+@dataclass(frozen=True)
+class MeshReport:
+    """The faults of a mesh, counted. Closed bodies have no open edges; no mesh of Tessera has T-junctions."""
+
+    vertices: int
+    distinct_positions: int
+    triangles: int
+    quads: int
+    open_edges: int
+    non_manifold_edges: int
+    inconsistent_edges: int
+    t_junctions: int
+    flipped_triangles: int
+    degenerate_triangles: int
+    non_finite_vertices: int
+
+
+class _Plan(Handle):
+    """How a set is divided into triangles."""
+
+    def __init__(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
+        options = struct("tsr_plan_options")
+        library.tsr_plan_defaults(ctypes.byref(options))
+        _fill(options, wanted)
+        handle = ctypes.c_void_p()
+        run(
+            library.tsr_plan_new,
+            ctypes.byref(handle),
+            patches._handle,
+            ctypes.byref(options),
+            progress=progress,
+            is_long=len(patches) > _LONG or wanted["fewest"],
+            makes=handle,
+        )
+        self._handle = handle
+
+    def describe(self) -> Any:
+        info = struct("tsr_plan_info")
+        call(library.tsr_plan_describe, self._handle, ctypes.byref(info))
+        return info
+
+
+_LONG = 200  # patches, below which a plan is made at once
+
+
+def _fill(options: Any, wanted: dict[str, Any]) -> None:
+    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap", "max_triangles")
+    for name in limits:
+        if wanted[name] is not None:
+            setattr(options, name, wanted[name])
+    if wanted["rates"] is not None:
+        rates = wanted["rates"]
+        options.rate_u, options.rate_v = (rates, rates) if isinstance(rates, int) else rates
+    is_limited = any(wanted[name] is not None for name in ("tolerance", "angle", "pixels", "rates"))
+    flags = {
+        _RELATIVE: wanted["relative"],
+        _SHARE: wanted["share_vertices"],
+        _QUADS: wanted["quads"],
+        _FEWEST: wanted["fewest"],
+        _SMALLEST: wanted["max_triangles"] is not None and not is_limited,
+        _DOUBLE: _is_double(wanted["dtype"]),
+        _APART: not wanted["close_edges"],
+    }
+    options.flags = sum(flag for flag, is_set in flags.items() if is_set)
+    view = wanted["view"]
+    if wanted["pixels"] is not None and view is None:
+        raise ArgumentError("pixels: expected a view beside it: view=View(eye=..., target=...)")
+    if view is None:
+        return
+    for name in ("eye", "target", "up"):
+        vector = vectors_of(f"view.{name}", getattr(view, name))
+        if vector.shape != (3,):
+            raise ArgumentError(f"view.{name}: expected shape (3,), found {vector.shape}")
+        getattr(options, name)[:] = vector.tolist()
+    for name in ("field_of_view", "extent", "near_distance"):
+        if getattr(view, name) is not None:
+            setattr(options, name, getattr(view, name))
+    options.width, options.height = view.width, view.height
+
+
+def _is_double(dtype: Any) -> bool:
+    if np.dtype(dtype) not in (np.float32, np.float64):
+        raise ArgumentTypeError(f"dtype: expected float32 or float64, found {np.dtype(dtype)}")
+    return np.dtype(dtype) == np.float64
+
+
+class Mesh:
+    """A mesh, made by PatchSet.tessellate(). Its arrays are views of memory that it may write again.
+
+    - ``vertices`` (n, 3): float32, relative to ``origin``; or float64, in the model
+    - ``normals`` (n, 3): float32, unit; None if vertices are shared across creases
+    - ``uv`` (n, 2): float32, parameters of the patch
+    - ``faces`` (m, 3), ``patches`` (m,): uint32, vertices counter-clockwise, and the patch of each triangle
+    - ``quads`` (q, 4), ``quad_patches`` (q,): uint32
+    - ``bound``: the proven distance between surfaces and mesh; ``gap``: how far faces fail to meet at edges of the model;
+      ``angle``, ``pixels``: proven, 0 if not wanted; ``open_edges``: edges of one triangle
+
+    >>> import tessera as ts
+    >>> mesh = ts.read(goblet).patches().tessellate(rates=8)
+    >>> mesh
+    <Mesh 3,564 vertices, 5,568 triangles, unproven>
+    """
+
+    vertices: np.ndarray
+    normals: np.ndarray | None
+    uv: np.ndarray
+    faces: np.ndarray
+    patches: np.ndarray
+    quads: np.ndarray
+    quad_patches: np.ndarray
+    origin: np.ndarray
+    bound: float
+    gap: float
+    angle: float
+    pixels: float
+    is_proven: bool
+    open_edges: int
+
+    def __init__(self) -> None:
+        self._store: dict[str, np.ndarray] = {}
+        self._plan: _Plan | None = None
+        self._set: PatchSet | None = None
+        self._wanted: dict[str, Any] = {}
+
+    def _make(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
+        plan = _Plan(patches, wanted, progress)
+        self._set, self._wanted, self._plan = patches, wanted, plan
+        self._write(progress)
+
+    def _write(self, progress: Progress | None) -> None:
+        """Describes the plan, takes memory and writes the mesh."""
+        assert self._plan is not None and self._set is not None
+        info = self._take(self._plan.describe())
+        self._revision = self._set._info().revision
+        run(
+            library.tsr_plan_write,
+            self._plan._handle,
+            ctypes.byref(self._struct()),
+            progress=progress,
+            is_long=info.triangles > 50_000,
+        )
+
+    def _take(self, info: Any) -> Any:
+        """Takes what is proven from a plan, and memory for its mesh."""
+        assert self._set is not None
+        is_double = _is_double(self._wanted["dtype"])
+        self._float = self._records("float", info.vertices, 3, np.float32)
+        self.vertices = self._records("double", info.vertices, 3, np.float64) if is_double else self._float
+        self.normals = self._records("normals", info.vertices, 3, np.float32) if info.has_normals else None
+        self.uv = self._records("uv", info.vertices, 2, np.float32)
+        self.faces = self._records("faces", info.triangles, 3, np.uint32)
+        self.patches = self._records("patches", info.triangles, 1, np.uint32)
+        self.quads = self._records("quads", info.quads, 4, np.uint32)
+        self.quad_patches = self._records("quad_patches", info.quads, 1, np.uint32)
+        self.origin = np.zeros(3) if is_double else self._set.origin
+        self.bound, self.gap, self.angle, self.pixels = info.bound, info.gap, info.angle, info.pixels
+        self.is_proven, self.open_edges = bool(info.is_proven), info.open_edges
+        return info
+
+    def _records(self, name: str, count: int, components: int, dtype: Any) -> np.ndarray:
+        kept = self._store.get(name)
+        if kept is None or len(kept) < count:
+            kept = np.empty(count if components == 1 else (count, components), dtype)
+            self._store[name] = kept
+        return kept[:count]
+
+    def _struct(self) -> Any:
+        """Returns the tsr_mesh of the arrays."""
+        mesh = struct("tsr_mesh")
+        mesh.position = in_out(self._float)
+        if self.normals is not None:
+            mesh.normal = in_out(self.normals)
+        mesh.parameter = in_out(self.uv)
+        if self.vertices is not self._float:
+            mesh.position_f64 = in_out(self.vertices)
+        mesh.triangles, mesh.triangle_patches = address_of(self.faces), address_of(self.patches)
+        mesh.triangle_count = len(self.faces)
+        if len(self.quads):
+            mesh.quads, mesh.quad_patches = address_of(self.quads), address_of(self.quad_patches)
+            mesh.quad_count = len(self.quads)
+        return mesh
+
+    def update(self, progress: Progress | None = None) -> bool:
+        """Follows edits of the patches: proves the limits again and moves the vertices. Returns whether the mesh has other
+        triangles now; then its arrays are new views."""
+        if self._set is None:
+            raise StateError("the mesh was not made of patches", "stale")
+        if self._plan is None:  # a mesh that was pickled
+            self._make(self._set, self._wanted, progress)
+            return True
+        topology = ctypes.c_int32()
+        run(
+            library.tsr_plan_update,
+            self._plan._handle,
+            None,
+            0,
+            None,
+            0,
+            ctypes.byref(self._struct()),
+            ctypes.byref(topology),
+            progress=progress,
+        )
+        if topology.value:
+            self._write(progress)
+        else:
+            self._take(self._plan.describe())
+        return bool(topology.value)
+
+    def check(self) -> MeshReport:
+        """Counts the faults of the mesh."""
+        report = struct("tsr_mesh_report")
+        call(library.tsr_mesh_check, ctypes.byref(self._struct()), ctypes.byref(report))
+        return MeshReport(**{name: getattr(report, name) for name in MeshReport.__dataclass_fields__})
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes .obj, .ply, .stl, .glb or .gltf, with names and colours of the surfaces."""
+        of = None if self._set is None else self._set._handle
+        call(library.tsr_mesh_save, ctypes.byref(self._struct()), of, os.fsencode(path))
+
+    def positions(self) -> np.ndarray:
+        """Returns the vertices in the model, in double."""
+        return self.vertices + self.origin
+
+    def triangles(self) -> np.ndarray:
+        """Returns the faces and both triangles of each quad, (m, 3)."""
+        if not len(self.quads):
+            return self.faces
+        return np.concatenate([self.faces, self.quads[:, [0, 1, 2]], self.quads[:, [0, 2, 3]]])
+
+    def to_trimesh(self) -> Any:
+        """Returns a trimesh.Trimesh in the model's coordinates."""
+        import trimesh
+
+        return trimesh.Trimesh(self.positions(), self.triangles(), vertex_normals=self.normals, process=False)
+
+    def to_pyvista(self) -> Any:
+        """Returns a pyvista.PolyData in the model's coordinates."""
+        import pyvista
+
+        mesh = pyvista.PolyData.from_regular_faces(self.positions(), self.triangles().astype(np.int64))
+        if self.normals is not None:
+            mesh.point_data["Normals"] = self.normals
+        return mesh
+
+    @property
+    def nbytes(self) -> int:
+        """The bytes that were written."""
+        arrays = (self._float, self.normals, self.uv, self.faces, self.patches, self.quads, self.quad_patches)
+        double = self.vertices.nbytes if self.vertices is not self._float else 0
+        return double + sum(array.nbytes for array in arrays if array is not None)
+
+    def __repr__(self) -> str:
+        quads = f", {len(self.quads):,} quads" if len(self.quads) else ""
+        distance = self.bound + self.gap
+        parts = [f"proven within {distance:.3g}"] if self.is_proven and np.isfinite(distance) else []
+        parts += [f"normals within {self.angle:.3g} rad"] * (self.angle > 0)
+        parts += [f"within {self.pixels:.3g} pixels"] * (self.pixels > 0)
+        proven = ", ".join(parts) if self.is_proven else "unproven"
+        return f"<Mesh {len(self.vertices):,} vertices, {len(self.faces):,} triangles{quads}, {proven}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        state = {name: value for name, value in self.__dict__.items() if name not in ("_plan", "_store")}
+        if self.vertices is self._float:
+            del state["_float"]
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, _plan=None, _store={})
+        self.__dict__.setdefault("_float", self.vertices)
+
+
+def in_out(array: np.ndarray) -> Any:
+    """Returns the tsr_out of an array of the mesh."""
+    return out_view("mesh", array, array.dtype, array.shape[:1], array.shape[1])

@@ -1,0 +1,249 @@
+"""Rays, which meet the surfaces themselves."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._arrays import address_of, array_of, in_view, out_view, records_of, vectors_of
+from ._calls import Handle, call, run
+from ._library import library, struct
+from .errors import ArgumentError
+
+if TYPE_CHECKING:
+    from .patches import PatchSet
+
+#: The quantities of a hit: components and type.
+QUANTITIES: dict[str, tuple[int, Any]] = {
+    "kind": (1, np.uint8),
+    "flags": (1, np.uint8),
+    "surface": (1, np.uint32),
+    "patch": (1, np.uint32),
+    "t": (1, np.float64),
+    "uv": (2, np.float64),
+    "patch_uv": (2, np.float64),
+    "position": (3, np.float64),
+    "normal": (3, np.float64),
+    "du": (3, np.float64),
+    "dv": (3, np.float64),
+    "residual": (1, np.float64),
+}
+_USUAL = ("kind", "flags", "surface", "patch", "t", "uv", "position", "normal", "residual")
+_UNCERTIFIED = 4
+_LONG = 5_000  # rays, below which a call is over at once
+MISS, HIT, INVALID_RAY = range(3)
+
+
+class Hits:
+    """The hits of rays, an array per quantity. A miss has t = inf, indices of 0xffffffff and 0 elsewhere.
+
+    ``kind``: MISS, HIT or INVALID_RAY; ``flags``: bits of TSR_HIT_* in tessera_c.h; ``surface``, ``patch``; ``t``; ``uv`` in the
+    surface's parameters and ``patch_uv`` in the patch's; ``position`` and unit ``normal``; ``du``, ``dv`` by the surface's
+    parameters; ``residual``: the distance from the ray. An array is None if it was not wanted. Made of arrays of the
+    caller, it is where to write to: ``Hits(t=array)``.
+    """
+
+    kind: np.ndarray | None = None
+    flags: np.ndarray | None = None
+    surface: np.ndarray | None = None
+    patch: np.ndarray | None = None
+    t: np.ndarray | None = None
+    uv: np.ndarray | None = None
+    patch_uv: np.ndarray | None = None
+    position: np.ndarray | None = None
+    normal: np.ndarray | None = None
+    du: np.ndarray | None = None
+    dv: np.ndarray | None = None
+    residual: np.ndarray | None = None
+
+    def __init__(self, **arrays: np.ndarray) -> None:
+        unknown = set(arrays) - set(QUANTITIES)
+        if unknown:
+            raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
+        self.__dict__.update(arrays)
+
+    @classmethod
+    def empty(cls, shape: int | tuple[int, ...], quantities: Sequence[str] | None = None) -> Hits:
+        """Returns arrays to write to."""
+        shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        arrays = {}
+        for name in _USUAL if quantities is None else quantities:
+            if name not in QUANTITIES:
+                raise ArgumentError(f"{name!r} is no quantity; there are {', '.join(QUANTITIES)}")
+            components, dtype = QUANTITIES[name]
+            arrays[name] = np.empty(shape if components == 1 else (*shape, components), dtype)
+        return cls(**arrays)
+
+    @property
+    def is_hit(self) -> np.ndarray:
+        """Whether each ray meets a surface."""
+        if self.kind is None:
+            raise ArgumentError("is_hit needs the quantity kind")
+        return self.kind == HIT
+
+    @property
+    def certified(self) -> np.ndarray:
+        """Whether each ray has a hit that is proven to be the only root nearby."""
+        if self.flags is None:
+            raise ArgumentError("certified needs the quantities kind and flags")
+        return self.is_hit & (self.flags & _UNCERTIFIED == 0)
+
+    @property
+    def nbytes(self) -> int:
+        return sum(array.nbytes for array in self.__dict__.values())
+
+    def __repr__(self) -> str:
+        if self.kind is None:
+            return f"<Hits {', '.join(self.__dict__)}>"
+        return f"<Hits of {self.kind.size:,} rays: {np.count_nonzero(self.is_hit):,} hits>"
+
+    def _struct(self, shape: tuple[int, ...]) -> Any:
+        out = struct("tsr_hits_out")
+        out.is_double = 1
+        for name, array in self.__dict__.items():
+            components, dtype = QUANTITIES[name]
+            setattr(out, name, out_view(name, array, dtype, shape, components))
+        return out
+
+
+class _Rays:
+    """Rays as the library takes them, broadcast over the shapes of all arrays."""
+
+    def __init__(self, origins: Any, directions: Any, tnear: Any, tfar: Any, spawn_offset: Any) -> None:
+        is_float = all(getattr(value, "dtype", None) == np.float32 for value in (origins, directions))
+        dtype = np.float32 if is_float else np.float64
+        vectors = {"origin": vectors_of("origins", origins, dtype), "direction": vectors_of("directions", directions, dtype)}
+        scalars = {"tnear": tnear, "tfar": tfar, "spawn_offset": spawn_offset}
+        scalars = {name: array_of(name, value, dtype) for name, value in scalars.items() if value is not None}
+        shapes = {name: array.shape[:-1] for name, array in vectors.items()}
+        shapes.update((name, array.shape) for name, array in scalars.items())
+        try:
+            self.shape: tuple[int, ...] = np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            found = ", ".join(f"{name} of {shape}" for name, shape in shapes.items())
+            raise ArgumentError(f"the rays do not fit each other: {found}") from None
+        self.struct = struct("tsr_rays")
+        self.struct.is_double = not is_float
+        self._kept: list[np.ndarray] = []
+        for name, array in (*vectors.items(), *scalars.items()):
+            self._put(name, array, 3 if name in vectors else 1)
+        self.count: int = self.struct.direction.count
+
+    def _put(self, name: str, array: np.ndarray, components: int) -> None:
+        # One record holds for all rays, of directions alone it does not.
+        if name == "direction" or array.size != components:
+            array = np.broadcast_to(array, self.shape if components == 1 else (*self.shape, components))
+        flat = records_of(array, components)
+        self._kept.append(flat)
+        setattr(self.struct, name, in_view(flat))
+
+
+class Scene(Handle):
+    """Patches prepared for rays: origin + t * direction. Directions need no unit length. Arrays of shape (..., 3)
+    broadcast, and so do ``tnear`` (0), ``tfar`` (infinity) and ``spawn_offset``: how far from the origin surfaces do not count.
+
+    >>> import numpy as np, tessera as ts
+    >>> scene = ts.read(goblet).patches().rays()
+    >>> hits = scene.closest(origins=[0, -100, 1], directions=[0, 1, 0])
+    >>> bool(hits.is_hit), bool(hits.certified), hits.position.shape
+    (True, True, (3,))
+    """
+
+    def __init__(self, patches: PatchSet, tolerance: float | None, pieces: int, editable: bool) -> None:
+        self.patches = patches
+        self._options = (tolerance, pieces, editable)
+        options = struct("tsr_scene_options")
+        library.tsr_scene_defaults(ctypes.byref(options))
+        options.tolerance, options.pieces, options.is_editable = tolerance or 0, pieces, editable
+        handle = ctypes.c_void_p()
+        run(library.tsr_scene_new, ctypes.byref(handle), patches._handle, ctypes.byref(options), makes=handle)
+        self._handle = handle
+
+    def _info(self) -> Any:
+        info = struct("tsr_scene_info")
+        call(library.tsr_scene_describe, self._handle, ctypes.byref(info))
+        return info
+
+    @property
+    def box(self) -> np.ndarray:
+        """The box of all that rays can meet, (2, 3)."""
+        info = self._info()
+        return np.array([info.low, info.high])
+
+    @property
+    def spawn_offset(self) -> float:
+        """The spawn_offset that suits rays that start on a surface."""
+        return self._info().spawn_offset
+
+    def refit(self) -> None:
+        """Follows edits of the patches."""
+        run(library.tsr_scene_refit, self._handle)
+
+    def closest(
+        self,
+        origins: Any,
+        directions: Any,
+        tnear: Any = None,
+        tfar: Any = None,
+        spawn_offset: Any = None,
+        quantities: Sequence[str] | None = None,
+        out: Hits | None = None,
+    ) -> Hits:
+        """Returns the closest hit of each ray. ``quantities``: which; ``out``: where to write to."""
+        rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
+        hits = Hits.empty(rays.shape, quantities) if out is None else out
+        to = hits._struct(rays.shape)
+        self._run(library.tsr_scene_closest, rays, to)
+        return hits
+
+    def occluded(
+        self, origins: Any, directions: Any, tnear: Any = None, tfar: Any = None, spawn_offset: Any = None
+    ) -> np.ndarray:
+        """Returns whether anything lies on each ray."""
+        rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
+        found = np.empty(rays.shape, np.uint8)
+        self._run(library.tsr_scene_occluded, rays, out_view("occluded", found, np.uint8, rays.shape, 1))
+        return found.view(bool)
+
+    def all(
+        self,
+        origins: Any,
+        directions: Any,
+        tnear: Any = None,
+        tfar: Any = None,
+        spawn_offset: Any = None,
+        quantities: Sequence[str] | None = None,
+    ) -> tuple[np.ndarray, Hits]:
+        """Returns ``first`` and all hits, ray after ray, by growing t: those of ray k are first[k] to first[k + 1] - 1."""
+        rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
+        found = Handle()
+        handle = ctypes.c_void_p()
+        run(
+            library.tsr_scene_all,
+            ctypes.byref(handle),
+            self._handle,
+            ctypes.byref(rays.struct),
+            is_long=rays.count > _LONG,
+            makes=handle,
+        )
+        found._handle = handle
+        count = ctypes.c_size_t()
+        first = np.empty(rays.count + 1, np.uint64)
+        call(library.tsr_hits_read, handle, ctypes.byref(count), address_of(first), None)
+        hits = Hits.empty(count.value, quantities)
+        call(library.tsr_hits_read, handle, None, None, ctypes.byref(hits._struct((count.value,))))
+        found.close()
+        return first.astype(np.int64), hits
+
+    def _run(self, function: Any, rays: _Rays, to: Any) -> None:
+        is_long = rays.count > _LONG
+        run(function, self._handle, ctypes.byref(rays.struct), ctypes.byref(to), is_long=is_long)
+
+    def __repr__(self) -> str:
+        return f"<Scene of {self.patches!r}, {self._info().memory_bytes / 2**20:.1f} MiB>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scene, (self.patches, *self._options)

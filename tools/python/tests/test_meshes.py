@@ -1,0 +1,182 @@
+"""Meshes: what is proven, memory, edits, files, other packages."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import tessera as ts
+from conftest import wavy
+
+
+def test_a_mesh_keeps_its_tolerance(goblet):
+    mesh = goblet.patches().tessellate(tolerance=1e-2)
+    assert mesh.is_proven and 0 < mesh.bound <= 1e-2
+    assert mesh.vertices.dtype == mesh.normals.dtype == np.float32 and mesh.faces.dtype == np.uint32
+    assert mesh.faces.max() < len(mesh.vertices) and mesh.patches.max() < len(goblet.patches())
+    assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-5)
+    report = mesh.check()
+    assert report.triangles == len(mesh.faces) and report.t_junctions == 0 and report.open_edges == mesh.open_edges
+    assert "proven within" in repr(mesh) and f"{len(mesh.faces):,} triangles" in repr(mesh)
+    # The corners lie on the surface, by other means: rays along the normals.
+    scene = goblet.patches().rays()
+    some = mesh.positions()[::97]
+    normals = mesh.normals[::97].astype(float)
+    hits = scene.closest(some - normals * 1e-2, normals, tfar=2e-2)
+    found = hits.is_hit
+    assert found.mean() > 0.9
+    assert np.abs(hits.t[found] - 1e-2).max() < 1e-4
+
+
+def test_options():
+    patches = ts.bezier(wavy(3, 3)).patches()
+    fine, coarse = patches.tessellate(1e-3), patches.tessellate(1e-1)
+    assert len(fine.faces) > len(coarse.faces)
+    assert len(patches.tessellate(rates=4).faces) == 9 * 32
+    assert not patches.tessellate(rates=(3, 5)).is_proven
+    quads = patches.tessellate(1e-2, quads=True)
+    assert len(quads.quads) > 0 and quads.quads.shape[1] == 4 and len(quads.quad_patches) == len(quads.quads)
+    assert len(quads.triangles()) == len(quads.faces) + 2 * len(quads.quads)
+    shared = patches.tessellate(1e-2, share_vertices=True)
+    assert shared.normals is None and len(shared.vertices) < len(patches.tessellate(1e-2).vertices)
+    assert patches.tessellate(1e-2, share_vertices=True, crease_angle=0.5).normals is not None
+    relative = patches.tessellate(1e-3, relative=True)
+    assert relative.bound <= 1e-3 * np.linalg.norm(np.diff(patches.box, axis=0)) * 1.001
+    turned = patches.tessellate(angle=0.2)
+    assert 0 < turned.angle <= 0.2 and "rad" in repr(turned)
+    budget = patches.tessellate(max_triangles=500)
+    assert 100 < len(budget.faces) <= 500 and budget.is_proven
+    view = ts.View(eye=(1, 1, 10), target=(1, 1, 0), up=(0, 1, 0))
+    assert 0 < patches.tessellate(pixels=0.5, view=view).pixels <= 0.5
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ({}, "tolerance"),
+        ({"tolerance": -1}, "tolerance"),
+        ({"tolerance": float("nan")}, "tolerance"),
+        ({"pixels": 1}, "expected a view"),
+        ({"pixels": 1, "view": ts.View((0, 0), (0, 0, 0))}, "view.eye"),
+        ({"tolerance": 1e-6, "max_triangles": 100}, "triangles"),
+        ({"rates": 0}, ""),
+        ({"tolerance": 1, "dtype": int}, "float32 or float64"),
+    ],
+)
+def test_bad_options(options, words):
+    with pytest.raises(ts.Error, match=words):
+        ts.bezier(wavy(1, 1)[0]).patches().tessellate(**options)
+
+
+def test_positions_in_double_are_those_of_the_model():
+    points = wavy(2, 2) + [1e6, 0, 0]
+    patches = ts.bezier(points).patches()
+    single = patches.tessellate(1e-3)
+    double = patches.tessellate(1e-3, dtype=np.float64)
+    assert double.vertices.dtype == np.float64 and (double.origin == 0).all()
+    assert double.vertices[:, 0].min() == 1e6
+    assert np.allclose(single.positions(), double.positions(), atol=1e-6)
+    assert double.check().t_junctions == 0
+
+
+def test_out_writes_into_the_same_memory():
+    patches = ts.bezier(wavy(3, 3)).patches()
+    mesh = patches.tessellate(1e-3)
+    vertices, faces = mesh.vertices, mesh.faces
+    assert patches.tessellate(1e-2, out=mesh) is mesh
+    assert np.shares_memory(mesh.vertices, vertices) and np.shares_memory(mesh.faces, faces)
+    assert (mesh.faces == patches.tessellate(1e-2).faces).all()
+    patches.tessellate(1e-4, out=mesh)  # more than fits
+    assert (mesh.vertices == patches.tessellate(1e-4).vertices).all()
+
+
+def test_edits_and_updates():
+    patches = ts.bezier(wavy(3, 3)).patches()
+    mesh, scene = patches.tessellate(1e-2), patches.rays(editable=True)
+    before = mesh.vertices.copy()
+    points = patches[4].points
+    with pytest.raises(ValueError, match="read-only"):
+        points[1, 1, 2] += 1
+    points = points.copy()
+    points[1:3, 1:3, 2] += 1e-4
+    patches[4].points = points
+    assert (patches[4].points == points).all()
+    assert mesh.update() is False
+    moved = np.abs(mesh.vertices - before).max(axis=1) > 0
+    assert moved.any() and set(np.unique(mesh.patches[moved[mesh.faces].any(axis=1)])) == {4}
+    points[1:3, 1:3, 2] += 3
+    patches[4].points = points
+    assert mesh.update() is True
+    assert (mesh.vertices == patches.tessellate(1e-2).vertices).all() or mesh.is_proven
+    with pytest.raises(ts.StateError):
+        scene.closest([1.5, 1.5, 9], [0, 0, -1])
+    scene.refit()
+    assert scene.closest([1.5, 1.5, 9], [0, 0, -1]).position[2] > 1
+
+
+def test_bad_edits():
+    patches = ts.bezier(wavy(2, 1)).patches()
+    points = patches[1].points
+    with pytest.raises(IndexError):
+        patches[2]
+    with pytest.raises(ts.ArgumentError, match="expected shape"):
+        patches[1].points = points[:3]
+    with pytest.raises(ts.ArgumentError, match="control points"):
+        patches.edit([0, 1], points)
+    with pytest.raises(ts.ArgumentError, match="numbers from 0"):
+        patches.edit([-1], points)
+    with pytest.raises(ts.ArgumentError) as caught:
+        patches.edit([0, 1], np.stack([points, points * np.nan]))
+    assert caught.value.code == "non_finite" and caught.value.index == 1
+
+
+def test_files(goblet, tmp_path):
+    mesh = goblet.patches().tessellate(1e-2)
+    for name in ("goblet.obj", "goblet.ply", "goblet.stl", "goblet.glb"):
+        mesh.save(tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 1000
+    with pytest.raises(ts.UnsupportedError, match="extension|format"):
+        mesh.save(tmp_path / "goblet.xyz")
+    with pytest.raises(OSError):
+        mesh.save(tmp_path / "no" / "goblet.ply")
+
+
+def test_another_reader_finds_the_same_mesh(goblet, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    mesh = goblet.patches().tessellate(1e-2)
+    mesh.save(tmp_path / "goblet.ply")
+    found = meshio.read(tmp_path / "goblet.ply")
+    assert np.allclose(found.points, mesh.positions(), atol=1e-6)
+    assert (found.cells_dict["triangle"] == mesh.faces).all()
+
+
+def test_trimesh(goblet):
+    pytest.importorskip("trimesh")
+    made = goblet.patches().tessellate(1e-2, share_vertices=True).to_trimesh()
+    assert made.is_watertight and made.volume > 0
+
+
+def test_pyvista(goblet):
+    pytest.importorskip("pyvista")
+    mesh = goblet.patches().tessellate(1e-2)
+    assert mesh.to_pyvista().n_cells == len(mesh.faces)
+
+
+def test_meshes_and_sets_are_pickled():
+    patches = ts.bezier(wavy(2, 2)).patches()
+    points = np.array(patches[3].points) + [0, 0, 1e-3]
+    patches[3].points = points
+    mesh = patches.tessellate(1e-2)
+    copy = pickle.loads(pickle.dumps(mesh))
+    assert (copy.vertices == mesh.vertices).all() and (copy.faces == mesh.faces).all()
+    assert copy.check() == mesh.check() and repr(copy) == repr(mesh)
+    again = pickle.loads(pickle.dumps(patches))
+    assert (again[3].points == points).all()
+    assert (again.tessellate(1e-2).vertices == mesh.vertices).all()
+    assert copy.update() is True and (copy.vertices == mesh.vertices).all()
+
+
+def test_measure(goblet):
+    patches = goblet.patches()
+    found = ts.measure(lambda: patches.tessellate(1e-3), repeats=2)
+    assert found.seconds > 0 and found.share_of_limit > 0 and found.nbytes == found.result.nbytes
