@@ -15,13 +15,11 @@
 namespace tessera::test {
 namespace {
 
-/// The hits of all kinds of queries of a scene, beside those that a referee keeps of the whole surface's. Rays are aimed
-/// at the whole surface's box, or at a part of it.
-void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t seed, const Box3& aim = {}) {
+/// The hits of all kinds of queries of a scene, beside those that a referee keeps of the whole surface's.
+void expect_kept(const Face& face, const RaySceneOptions& options, const std::vector<Ray>& rays) {
   const PatchSet whole_set = value_of(make_patch_set(face.model, {.trims = false}));
   const RayScene whole = value_of(RayScene::make(whole_set)), scene = value_of(RayScene::make(face.set, options));
   const TrimRegion region = value_of(TrimRegion::make(*face.model.surfaces[0].trims, face.grid));
-  const std::vector<Ray> rays = rays_through(aim.empty() ? whole_set.box() : aim, 4000, seed);
   HitLists all_of_whole, lists;
   ASSERT_TRUE(whole.all(rays, all_of_whole).ok());
   ASSERT_TRUE(scene.all(rays, lists).ok());
@@ -54,6 +52,11 @@ void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t
   }
   EXPECT_GT(kept, rays.size() / 100);
   EXPECT_GT(cut_away, rays.size() / 100);
+}
+
+/// For rays aimed at the whole surface's box, or at a part of it.
+void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t seed, const Box3& aim = {}) {
+  expect_kept(face, options, rays_through(aim.empty() ? face.grid.box() : aim, 4000, seed));
 }
 
 std::vector<TrimLoop> outline_with_holes() {
@@ -145,6 +148,27 @@ TEST(TrimmedScene, RaysBesideTheKeptPartLookAtNothing) {
   EXPECT_NEAR(bounds.upper_y, 1.15, 0.02);
   rtcReleaseScene(world);
   rtcReleaseDevice(device);
+}
+
+// Rays beside loops, 1e-2 to 1e-8 off in the parameters, in coherent packets.
+TEST(TrimmedScene, RaysBesideLoopsAreDecidedOneByOne) {
+  Random random(33);
+  for (const BSplineSurface& surface : {plane(), wavy(), cylinder()}) {
+    const Face face(surface, outline_with_holes());
+    std::vector<Ray> rays;
+    for (std::size_t k = 0; k < 4000; ++k) {
+      const TrimLoop& loop = (*face.model.surfaces[0].trims)[k / 16 % 3];
+      const Curve& curve = loop.curves[0];
+      const Interval range = curve.domain();
+      const double t = range.from + (0.1 + 0.02 * static_cast<double>(k % 16)) * (range.to - range.from);
+      const Vec3 at = evaluate_jet(curve, t).position;
+      const double off = std::pow(10, -2 - 6 * uniform(random, 0, 1)), angle = 6.3 * uniform(random, 0, 1);
+      const Vec3 p = evaluate_jet(surface, at.x + off * std::cos(angle), at.y + off * std::sin(angle)).position;
+      const Vec3 eye{1.5 + 0.01 * static_cast<double>(k / 16), 1, 40};
+      rays.push_back(ray(eye, p - eye));
+    }
+    expect_kept(face, {}, rays);
+  }
 }
 
 TEST(TrimmedScene, AsksFiltersAboutKeptRootsAlone) {

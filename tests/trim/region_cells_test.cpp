@@ -82,6 +82,44 @@ ParameterPoint random_point(std::mt19937& random, const TrimRegion::Impl& region
   return q;
 }
 
+/// A box about a point, 1e-1 to 1e-12 of the domain wide, and within it.
+Domain random_box(std::mt19937& random, const Domain& domain, const ParameterPoint& q) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const double u = std::pow(10, -1 - 11 * uniform(random)) * (domain.u1 - domain.u0);
+  const double v = std::pow(10, -1 - 11 * uniform(random)) * (domain.v1 - domain.v0);
+  return {std::max(q.u - u * uniform(random), domain.u0), std::min(q.u + u * uniform(random), domain.u1),
+          std::max(q.v - v * uniform(random), domain.v0), std::min(q.v + v * uniform(random), domain.v1)};
+}
+
+// Where cells tell the side of a box, each point of it has that side.
+TEST(RegionCells, TellTheSidesOfBoxes) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const Domain domains[] = {{0, 1, 0, 1}, {-3, 5, 1e4, 1e5}, {1e6, 1e6 + 1, -1e-6, 1e-6}};
+  std::size_t told = 0, checked = 0;
+  for (int k = 0; k < 150; ++k) {
+    const Domain& domain = domains[k % 3];
+    std::vector<TrimLoop> loops;
+    for (const TrimLoop& loop : random_loops(random)) loops.push_back(placed(loop, domain));
+    const TrimRegion region = value_of(TrimRegion::make(loops, domain));
+    const TrimRegion::Impl& impl = impl_of(region);
+    for (int i = 0; i < 1000; ++i) {
+      const ParameterPoint q = random_point(random, impl);
+      if (!domain.contains(q.u, q.v)) continue;
+      const Domain box = random_box(random, domain, q);
+      ++checked;
+      const TrimSide side = impl.cells.locate_all(box);
+      if (side == TrimSide::border) continue;
+      ++told;
+      for (const double u : {box.u0, box.u1, q.u, box.u_at(uniform(random))})
+        for (const double v : {box.v0, box.v1, q.v, box.v_at(uniform(random))})
+          ASSERT_EQ(by_all_pieces(impl, u, v), side) << k << ": " << u << ' ' << v;
+    }
+  }
+  EXPECT_GT(checked, 100000u);
+  EXPECT_GT(told, checked / 4);
+}
+
 TEST(RegionCells, AnswerAsAllPiecesTogetherDo) {
   std::mt19937 random(1);
   const Domain domains[] = {{0, 1, 0, 1}, {-3, 5, 1e4, 1e5}, {1e6, 1e6 + 1, -1e-6, 1e-6}, {0, 6.3, -1e9, 1e9}};

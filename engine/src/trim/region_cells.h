@@ -61,6 +61,22 @@ class RegionCells {
   /// Makes the cells. In `pieces`, an even number of ends meet at every point, and all lie within the domain.
   static RegionCells make(const std::vector<TrimPiece>& pieces, const Domain& domain, bool starts_inside);
 
+  /// The side of all points of a rectangle within the domain. `border`: the cell that holds it, or the two or four that
+  /// it lies across, do not tell.
+  TrimSide locate_all(const Domain& box) const {
+    const CellGrid* grid = grids_.data();
+    for (;;) {
+      const std::int32_t row = grid->row(box.v0), column = grid->column(box.u0);
+      const std::int32_t rows = grid->row(box.v1) - row, columns = grid->column(box.u1) - column;
+      const Cell* const first = &cells_[grid->first_cell + static_cast<std::size_t>(row * grid->columns + column)];
+      if ((rows | columns) != 0)
+        return rows <= 1 && columns <= 1 ? side_of_all(first, rows * grid->columns, columns) : TrimSide::border;
+      if (first->kind() <= Cell::inside) return static_cast<TrimSide>(first->kind());
+      if (first->kind() != Cell::grid) return locate_all_in_list(*first, box);
+      grid = &grids_[first->index()];
+    }
+  }
+
   /// The side of a point of the domain.
   TrimSide locate(const std::vector<TrimPiece>& pieces, double u, double v) const {
     const CellGrid* grid = grids_.data();
@@ -86,6 +102,31 @@ class RegionCells {
         const PieceSide side = side_of(pieces[entry->piece], {u, v});
         if (side == PieceSide::near) return TrimSide::border;
         parity ^= side == PieceSide::left || (side == PieceSide::beside && at_height != 0);
+      }
+      if (entry->is_last != 0) return static_cast<TrimSide>(parity);
+    }
+  }
+
+  /// The side that a cell, those `right` and `above` of it, and the one in the corner have in common.
+  static TrimSide side_of_all(const Cell* cell, std::int32_t above, std::int32_t right) {
+    const std::uint32_t kind = cell->kind();
+    const bool is_one = kind <= Cell::inside && cell[right].kind() == kind && cell[above].kind() == kind &&
+                        cell[above + right].kind() == kind;
+    return is_one ? static_cast<TrimSide>(kind) : TrimSide::border;
+  }
+  /// As locate_all(), by strips alone. A strip's value falls with u (a <= 0).
+  TrimSide locate_all_in_list(Cell cell, const Domain& box) const {
+    std::uint32_t parity = cell.kind() & 1;
+    for (const CellEntry* entry = &entries_[cell.index()];; ++entry) {
+      const bool rises = entry->b > 0;
+      const double least = entry->a * box.u1 + entry->b * (rises ? box.v0 : box.v1) + entry->c;
+      const double most = entry->a * box.u0 + entry->b * (rises ? box.v1 : box.v0) + entry->c;
+      if (least > entry->upper) {
+        const bool counts = box.v0 >= entry->from_v && box.v1 < entry->to_v;
+        if (!counts && box.v1 >= entry->from_v && box.v0 < entry->to_v) return TrimSide::border;
+        parity ^= static_cast<std::uint32_t>(counts);
+      } else if (!(most < entry->lower)) {
+        return TrimSide::border;
       }
       if (entry->is_last != 0) return static_cast<TrimSide>(parity);
     }

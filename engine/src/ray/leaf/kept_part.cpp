@@ -26,21 +26,25 @@ class HullOfPieces {
         off_{off_of(rectangle.u0, rectangle.u1), off_of(rectangle.v0, rectangle.v1)},
         middle_{0.5 * rectangle.u0 + 0.5 * rectangle.u1, 0.5 * rectangle.v0 + 0.5 * rectangle.v1} {}
 
-  bool is_empty() const { return !(hull_.u0 <= hull_.u1); }
   const Domain& hull() const { return hull_; }
 
-  /// A piece is monotone, so that each part of it lies in the box of its ends.
-  void add(const TrimPiece& piece) {
+  /// Adds a piece, and returns whether it may pass through the rectangle. It is monotone, so that each part of it lies in
+  /// the box of its ends.
+  bool add(const TrimPiece& piece) {
     const ParameterPoint size = distance(piece.start(), piece.end());
     const ParameterPoint off = off_ + 2 * piece.error + 1e-13 * (size + distance(piece.start(), middle_));
-    if (!meets({piece.lower_u(), piece.upper_u(), piece.lower_v(), piece.upper_v()}, off)) return;
+    if (!meets({piece.lower_u(), piece.upper_u(), piece.lower_v(), piece.upper_v()}, off)) return false;
     ParameterPoint from = piece.start();
+    bool passes = false;
     for (int k = 1; k <= parts_per_piece; ++k) {
       const ParameterPoint to = k == parts_per_piece ? piece.end() : point(piece, k);
       const Domain box{std::min(from.u, to.u), std::max(from.u, to.u), std::min(from.v, to.v), std::max(from.v, to.v)};
-      if (meets(box, off)) add(box.u0 - off.u, box.u1 + off.u, box.v0 - off.v, box.v1 + off.v);
       from = to;
+      if (!meets(box, off)) continue;
+      add(box.u0 - off.u, box.u1 + off.u, box.v0 - off.v, box.v1 + off.v);
+      passes = true;
     }
+    return passes;
   }
   void add(double u, double v) { add(u, u, v, v); }
 
@@ -68,21 +72,19 @@ class HullOfPieces {
 
 KeptPart kept_part(const TrimRegion& region, std::span<const std::uint32_t> pieces, const Domain& rectangle) {
   HullOfPieces found(rectangle);
-  for (const std::uint32_t piece : pieces) found.add(impl_of(region).pieces[piece]);
-  if (found.is_empty()) {
-    switch (region.locate((rectangle.u0 + rectangle.u1) / 2, (rectangle.v0 + rectangle.v1) / 2)) {
-      case TrimSide::inside:
-        return {PatchUse::whole, rectangle};
-      case TrimSide::outside:
-        return {PatchUse::out, rectangle};
-      default:
-        return {PatchUse::cut, rectangle};
-    }
+  KeptPart kept{PatchUse::cut, rectangle, {}};
+  for (const std::uint32_t piece : pieces)
+    if (found.add(impl_of(region).pieces[piece])) kept.pieces.push_back(piece);
+  if (kept.pieces.empty()) {
+    const TrimSide side = region.locate((rectangle.u0 + rectangle.u1) / 2, (rectangle.v0 + rectangle.v1) / 2);
+    if (side != TrimSide::border) kept.use = side == TrimSide::inside ? PatchUse::whole : PatchUse::out;
+    return kept;
   }
   for (const double u : {rectangle.u0, rectangle.u1})
     for (const double v : {rectangle.v0, rectangle.v1})
       if (region.locate(u, v) != TrimSide::outside) found.add(u, v);
-  return {PatchUse::cut, found.hull()};
+  kept.hull = found.hull();
+  return kept;
 }
 
 }  // namespace tessera::inline abi_0_1

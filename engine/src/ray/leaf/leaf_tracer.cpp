@@ -6,6 +6,7 @@
 
 #include "ray/leaf/polished_root.h"
 #include "ray/line/lane_vectors.h"
+#include "ray/net/seen_point.h"
 #include "ray/seam/spawn_root.h"
 
 namespace tessera::inline abi_0_1 {
@@ -103,11 +104,23 @@ void LeafTracer::search(unsigned leaf_index, QueryPacket& packet, unsigned lanes
   // Packets never ask for all roots.
   const bool is_tube = leaf_index >= first_tube;
   if (!is_tube && nets->leaves()[leaf_index].patch >= patches) return;
-  const bool together = !is_tube && kernels->packets != nullptr && use_of(leaf_index) == PatchUse::whole;
+  const bool together = !is_tube && kernels->packets != nullptr && use_of(leaf_index) != PatchUse::out;
   unsigned open = together ? decide(leaf_index, packet, lanes) : lanes;
   for (std::size_t lane = 0; open != 0; ++lane, open >>= 1) {
     if (open & 1u) search(leaf_index, packet.probes[lane], *packet.queries[lane], space);
   }
+}
+
+/// Returns the side of a root of a cut leaf, by what a kernel has proven of it. `border`: it lies near a loop.
+TrimSide LeafTracer::side_of(const Leaf& leaf, const kernel::RayRoot& root) const {
+  if (root.at_border) return TrimSide::border;
+  const double u = 0.5 + double{root.u}, v = 0.5 + double{root.v};
+  const double off_u = 2 * double{root.radius_u}, off_v = 2 * double{root.radius_v};
+  const KeptSquares& squares = trims->squares(static_cast<std::size_t>(&leaf - nets->leaves().data()));
+  const TrimSide side = squares.side_of({u - off_u, u + off_u, v - off_v, v + off_v});
+  if (side != TrimSide::border) return side;
+  const RootStart about = start_of(leaf, root);
+  return trims->side_near(leaf.patch, about.u, about.v, about.reach_u, about.reach_v);
 }
 
 /// Decides a packet's rays together. Returns the lanes that remain undecided.
@@ -117,46 +130,57 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if (lanes >> lane & 1u) packet.rays.far[lane] = probe_far(*packet.queries[lane]);
   }
+  const bool is_cut = use_of(leaf_index) == PatchUse::cut;
   const kernel::RayPacketKernels& side_by_side = *kernels->packets;
   (leaf.rational ? side_by_side.trace_rational_leaf : side_by_side.trace_polynomial_leaf)(nets->local(leaf_index),
                                                                                           packet.rays, lanes);
-  unsigned open = 0, roots = 0;
+  unsigned open = 0;
+  PacketRoots roots;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
     if ((lanes >> lane & 1u) == 0 || packet.rays.state[lane] == kernel::RayPacket::nothing) continue;
     RayQuery& query = *packet.queries[lane];
     query.trims = nullptr;
+    const kernel::RayRoot root = root_of(packet.rays, lane);
     const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
+    const TrimSide side = has_root && is_cut ? side_of(leaf, root) : TrimSide::inside;
+    if (side == TrimSide::outside) continue;
     const bool any = query.wanted == RootsWanted::any && query.filter == nullptr;
-    if (has_root && any && lies_between(root_of(packet.rays, lane), query.line)) {
+    if (has_root && any && side == TrimSide::inside && lies_between(root, query.line)) {
       query.found = true;
       ++query.steps;
     } else {
-      (has_root && !any ? roots : open) |= 1u << lane;
+      (has_root && !any ? roots.lanes : open) |= 1u << lane;
+      if (side == TrimSide::border) roots.near_loops |= 1u << lane;
     }
   }
-  return roots == 0 ? open : open | take_roots(leaf, packet, roots);
+  return roots.lanes == 0 ? open : open | take_roots(leaf, packet, roots);
+}
+
+/// Takes a root without gains, unless it is near a loop and rounding leaves its side undecided: then returns false.
+bool LeafTracer::take_root(RayQuery& query, bool is_near_loop, LeafRoot& root) const {
+  query.trims = is_near_loop ? trims : nullptr;
+  if (is_near_loop && !set_gain(seen({root.position, root.du, root.dv}, query.line), 1, 1, root)) return false;
+  ++query.steps;
+  query.take(root);
+  return true;
 }
 
 /// Takes the roots of these lanes. Returns the lanes that rounding leaves undecided.
-unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
+unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const {
   const BezierPatch& patch = set->patch(leaf.patch);
-  if (!polished_side_by_side(patch)) return take_each_root(leaf, packet, lanes);
+  if (!polished_side_by_side(patch)) return take_each_root(leaf, packet, roots);
   kernel::PolishedRays& rays = packet.polished;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
-    if ((lanes >> lane & 1u) == 0) continue;
+    if ((roots.lanes >> lane & 1u) == 0) continue;
     const RootStart start = start_of(leaf, root_of(packet.rays, lane));
     rays.u[lane] = start.u, rays.v[lane] = start.v;
     rays.reach_u[lane] = start.reach_u, rays.reach_v[lane] = start.reach_v;
   }
-  polish_side_by_side(patch, nets->frame(), *kernels, start_of(leaf, {}), rays, lanes);
+  polish_side_by_side(patch, nets->frame(), *kernels, start_of(leaf, {}), rays, roots.lanes);
   const double rounding = search_rounding(leaf.degree_u, leaf.degree_v, 0, 0);
   unsigned open = 0;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
-    if ((lanes >> lane & 1u) == 0) continue;
-    if (rays.state[lane] != kernel::PolishedRays::found) {
-      open |= 1u << lane;
-      continue;
-    }
+    if ((roots.lanes >> lane & 1u) == 0) continue;
     LeafRoot root;
     root.patch = leaf.patch;
     root.u = rays.root_u[lane], root.v = rays.root_v[lane];
@@ -165,28 +189,23 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, unsigned 
     root.s = rays.s[lane];
     root.residual = rounding;
     root.certified = true;
-    RayQuery& query = *packet.queries[lane];
-    ++query.steps;
-    query.take(root);
+    const bool is_found = rays.state[lane] == kernel::PolishedRays::found;
+    if (!is_found || !take_root(*packet.queries[lane], roots.near_loops >> lane & 1u, root)) open |= 1u << lane;
   }
   return open;
 }
 
 /// Takes the roots one by one.
-unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const {
+unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const {
   unsigned open = 0;
   for (std::size_t lane = 0; lane < QueryPacket::size; ++lane) {
-    if ((lanes >> lane & 1u) == 0) continue;
+    if ((roots.lanes >> lane & 1u) == 0) continue;
     RayQuery& query = *packet.queries[lane];
     LeafRoot root;
     root.patch = leaf.patch;
-    if (polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line, start_of(leaf, root_of(packet.rays, lane)),
-               false, root)) {
-      ++query.steps;
-      query.take(root);
-    } else {
-      open |= 1u << lane;
-    }
+    const bool is_found = polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line,
+                                 start_of(leaf, root_of(packet.rays, lane)), false, root);
+    if (!is_found || !take_root(query, roots.near_loops >> lane & 1u, root)) open |= 1u << lane;
   }
   return open;
 }
@@ -205,9 +224,10 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
   if (!trace(local, probe, roots)) return false;
   if (roots.count == 0) return true;
   if (probe.any && !roots.root[0].at_border) {
-    query.found = lies_between(roots.root[0], query.line);
+    query.found = lies_between(roots.root[0], query.line) &&
+                  (query.trims == nullptr || side_of(leaf, roots.root[0]) == TrimSide::inside);
     if (query.found) return true;
-    probe.any = false;  // that root is next to an end, so all are needed
+    probe.any = false;  // that root is next to an end, or not surely kept, so all are needed
     if (!trace(local, probe, roots)) return false;
   }
   return take_roots(leaf, roots, query);
@@ -216,23 +236,31 @@ bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe&
 /// Takes the roots of one ray. Returns false if rounding leaves something undecided.
 bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const {
   LeafRoot taken[kernel::RayRoots::most];
+  TrimSide sides[kernel::RayRoots::most];
   int count = 0;
+  const RootSides* const loops = query.trims;
   for (int k = 0; k < roots.count; ++k) {
     const BezierPatch& patch = set->patch(leaf.patch);
     const RootStart start = start_of(leaf, roots.root[k]);
     LeafRoot& root = taken[count];
+    const TrimSide side = sides[count] = loops == nullptr ? TrimSide::inside : side_of(leaf, roots.root[k]);
+    if (side == TrimSide::outside) continue;
     root.patch = leaf.patch;
     if (roots.root[k].at_border) {
       const BorderRoot what =
           polish_at_border(patch, nets->frame(), *kernels, query.line, start, tolerance_of(leaf), root);
       if (what == BorderRoot::open) return false;
       if (what == BorderRoot::beyond) continue;
-    } else if (!polish(patch, nets->frame(), *kernels, query.line, start, query.needs_gains(), root)) {
+    } else if (const bool with_gain = query.needs_gains() || side == TrimSide::border;
+               !polish(patch, nets->frame(), *kernels, query.line, start, with_gain, root)) {
       return false;
     }
     ++count;
   }
-  for (int k = 0; k < count; ++k) query.take(taken[k]);
+  for (int k = 0; k < count; ++k) {
+    query.trims = sides[k] == TrimSide::inside ? nullptr : loops;
+    query.take(taken[k]);
+  }
   return true;
 }
 

@@ -69,9 +69,15 @@ struct LeafTracer final : OriginTest, TracedLeaves {
 
  private:
   void search_tube(unsigned tube, RayQuery& query) const;
+  TrimSide side_of(const Leaf& leaf, const kernel::RayRoot& root) const;
   unsigned decide(unsigned leaf_index, QueryPacket& packet, unsigned lanes) const;
-  unsigned take_roots(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
-  unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, unsigned lanes) const;
+  /// The roots of a packet: bits of the rays that have one, and of those whose root is near a loop.
+  struct PacketRoots {
+    unsigned lanes = 0, near_loops = 0;
+  };
+  unsigned take_roots(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const;
+  unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const;
+  bool take_root(RayQuery& query, bool is_near_loop, LeafRoot& root) const;
   bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const;
   bool take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const;
 };

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "parallel/parallel_for.h"
-#include "ray/leaf/kept_part.h"
 #include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
@@ -58,6 +57,40 @@ bool shrink(Leaf& leaf, const Domain& patch, const Domain& kept) {
   return true;
 }
 
+/// Fills the squares of a leaf, by quarters.
+class SquareMarker {
+ public:
+  SquareMarker(const TrimRegion& region, const Domain& patch, const Leaf& leaf, KeptSquares& squares)
+      : region_(region), patch_(patch), leaf_(leaf), squares_(squares) {}
+
+  /// Fills `size` x `size` squares from (i, j) on, of which `kept` is kept.
+  void mark(const KeptPart& kept, unsigned i, unsigned j, unsigned size) {
+    if (kept.use != PatchUse::cut)
+      return fill(kept.use == PatchUse::whole ? squares_.inside : squares_.outside, i, j, size);
+    if (size == 1) return;
+    const unsigned half = size / 2;
+    for (const unsigned k : {i, i + half})
+      for (const unsigned n : {j, j + half}) mark(kept_part(region_, kept.pieces, rectangle(k, n, half)), k, n, half);
+  }
+
+ private:
+  static void fill(std::uint64_t& bits, unsigned i, unsigned j, unsigned size) {
+    for (unsigned k = i; k < i + size; ++k)
+      for (unsigned n = j; n < j + size; ++n) bits |= std::uint64_t{1} << (KeptSquares::per_side * k + n);
+  }
+  Domain rectangle(unsigned i, unsigned j, unsigned size) const {
+    Leaf part = leaf_;
+    part.du *= double(size) / KeptSquares::per_side, part.dv *= double(size) / KeptSquares::per_side;
+    part.u0 += i * (leaf_.du / KeptSquares::per_side), part.v0 += j * (leaf_.dv / KeptSquares::per_side);
+    return rectangle_of(patch_, part);
+  }
+
+  const TrimRegion& region_;
+  const Domain& patch_;
+  const Leaf& leaf_;
+  KeptSquares& squares_;
+};
+
 }  // namespace
 
 Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execution& execution) {
@@ -74,16 +107,19 @@ Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execut
   for (std::optional<TrimRegion>& region : made) regions_.push_back(*std::move(region));
   regions_of_.assign(set.patch_count(), std::uint32_t{no_id});
   for (const PatchTrims::Cut& cut : trims_->cuts) regions_of_[cut.patch] = cut.region;
-  uses_.resize(leaves.size());
-  const auto find_uses = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) uses_[k] = use_of(set, leaves[k]);
+  squares_.resize(leaves.size());
+  const auto find_squares = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) squares_[k] = squares_of(set, leaves[k]);
   };
-  return parallel_for(leaves.size(), leaves_per_task, quiet, find_uses);
+  return parallel_for(leaves.size(), leaves_per_task, quiet, find_squares);
 }
 
-std::uint8_t LeafTrims::use_of(const SetView& set, Leaf& leaf) const {
-  const auto number = [](PatchUse use) { return static_cast<std::uint8_t>(use); };
-  if (!trims_->is_cut[leaf.patch]) return number(PatchUse::whole);
+KeptSquares LeafTrims::squares_of(const SetView& set, Leaf& leaf) const {
+  KeptSquares squares;
+  if (!trims_->is_cut[leaf.patch]) {
+    squares.inside = ~std::uint64_t{0};
+    return squares;
+  }
   const TrimRegion& region = regions_[regions_of_[leaf.patch]];
   const auto cut = std::ranges::lower_bound(trims_->cuts, leaf.patch, {}, &PatchTrims::Cut::patch);
   const std::span<const std::uint32_t> pieces = impl_of(region).pieces_of(cut->place);
@@ -91,22 +127,33 @@ std::uint8_t LeafTrims::use_of(const SetView& set, Leaf& leaf) const {
   KeptPart kept = kept_part(region, pieces, rectangle_of(patch, leaf));
   for (int k = 0; k < max_shrinks && kept.use == PatchUse::cut && shrink(leaf, patch, kept.hull); ++k)
     kept = kept_part(region, pieces, rectangle_of(patch, leaf));
-  return number(kept.use);
+  SquareMarker(region, patch, leaf, squares).mark(kept, 0, 0, KeptSquares::per_side);
+  return squares;
+}
+
+/// A rectangle about a point of a patch, in the surface's parameters.
+Domain LeafTrims::around(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const {
+  const Domain& domain = set_->sources[patch].domain;
+  return {domain.u_at(std::max(u - reach_u, 0.0)), domain.u_at(std::min(u + reach_u, 1.0)),
+          domain.v_at(std::max(v - reach_v, 0.0)), domain.v_at(std::min(v + reach_v, 1.0))};
+}
+
+TrimSide LeafTrims::side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const {
+  return impl_of(regions_[regions_of_[patch]]).cells.locate_all(around(patch, u, v, reach_u, reach_v));
 }
 
 // The root may lie anywhere in a rectangle about it. A loop that passes through has corners on both sides of it, unless
 // it turns back inside: then it is as near as rounding.
 TrimSide LeafTrims::side_of(const LeafRoot& root) const {
-  const Domain& domain = set_->sources[root.patch].domain;
   const TrimRegion& region = regions_[regions_of_[root.patch]];
   const double off = root.residual + root.noise;
-  const double du = std::min(reach_u(root, off), 1.0), dv = std::min(reach_v(root, off), 1.0);
-  const double us[] = {std::max(root.u - du, 0.0), std::min(root.u + du, 1.0)};
-  const double vs[] = {std::max(root.v - dv, 0.0), std::min(root.v + dv, 1.0)};
+  const Domain box = around(root.patch, root.u, root.v, reach_u(root, off), reach_v(root, off));
+  if (const TrimSide all = impl_of(region).cells.locate_all(box); all != TrimSide::border) return all;
+  const Domain& domain = set_->sources[root.patch].domain;
   const TrimSide side = region.locate(domain.u_at(root.u), domain.v_at(root.v));
-  for (const double u : us)
-    for (const double v : vs)
-      if (region.locate(domain.u_at(u), domain.v_at(v)) != side) return TrimSide::border;
+  for (const double u : {box.u0, box.u1})
+    for (const double v : {box.v0, box.v1})
+      if (region.locate(u, v) != side) return TrimSide::border;
   return side;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "block/patch_trims.h"
+#include "ray/leaf/kept_part.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/line/ray_query.h"
 #include "tessera/execution.h"
@@ -23,19 +24,27 @@ class LeafTrims final : public RootSides {
   Status build(const SetView& set, std::span<Leaf> leaves, const Execution& execution);
   /// Whether any patch is cut; otherwise no other call is allowed.
   bool any() const { return trims_ != nullptr; }
-  PatchUse use(std::size_t leaf) const { return static_cast<PatchUse>(uses_[leaf]); }
+  PatchUse use(std::size_t leaf) const { return squares_[leaf].use(); }
+  /// What is kept of a leaf, by squares.
+  const KeptSquares& squares(std::size_t leaf) const { return squares_[leaf]; }
+  /// The side of all points of a cut leaf's patch within (u +- reach_u, v +- reach_v). `border`: a loop passes near, and
+  /// only side_of() may tell.
+  TrimSide side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
   /// The side of a root of a cut leaf. `border`: the loops pass between the places where the root may be.
   TrimSide side_of(const LeafRoot& root) const override;
-  std::size_t memory_bytes() const { return uses_.capacity() + regions_of_.capacity() * sizeof(std::uint32_t); }
+  std::size_t memory_bytes() const {
+    return squares_.capacity() * sizeof(KeptSquares) + regions_of_.capacity() * sizeof(std::uint32_t);
+  }
 
  private:
-  std::uint8_t use_of(const SetView& set, Leaf& leaf) const;
+  KeptSquares squares_of(const SetView& set, Leaf& leaf) const;
+  Domain around(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
 
   std::shared_ptr<const PatchTrims> trims_;
   const PatchSet::Impl* set_ = nullptr;
   std::vector<TrimRegion> regions_;        ///< as those of `trims_`, and they locate points
   std::vector<std::uint32_t> regions_of_;  ///< `[patch]`: into `regions_`, if it is cut
-  std::vector<std::uint8_t> uses_;         ///< `[leaf]`
+  std::vector<KeptSquares> squares_;       ///< `[leaf]`
 };
 
 }  // namespace tessera::inline abi_0_1

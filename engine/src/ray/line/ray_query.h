@@ -139,10 +139,11 @@ struct RayQuery {
   /// Returns t of a root that was taken. Call it where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
   bool done() const { return (found && wanted == RootsWanted::any) || overflow || stopped; }
-  /// Returns whether each root must be known to its last digits, one by one.
-  bool decides_each_root() const { return origin != nullptr || filter != nullptr || trims != nullptr; }
-  /// Returns whether roots must have gains.
-  bool needs_gains() const { return wanted == RootsWanted::all || origin != nullptr || trims != nullptr; }
+  /// Returns whether each root must be known to its last digits, one by one. Where loops cut the leaf, so must those
+  /// that are near a loop.
+  bool decides_each_root() const { return origin != nullptr || filter != nullptr; }
+  /// Returns whether roots must have gains. Near a loop they must have them, too.
+  bool needs_gains() const { return wanted == RootsWanted::all || origin != nullptr; }
 
   /// Takes a root, unless it is cut away. Returns false if its t is outside of [tnear, tfar], or if it stands for the
   /// origin that the ray leaves: there may be others beside it.
