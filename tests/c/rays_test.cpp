@@ -1,5 +1,6 @@
 // Rays through C: the hits of C++, bit for bit, in arrays of float and double.
 
+#include <cstring>
 #include <random>
 
 #include "c/c_objects.h"
@@ -112,6 +113,20 @@ TEST(CRays, ClosestHitsOfCpp) {
   check_closest<float, double>(200);
   check_closest<double, float>(200);
   check_closest<float, float>(200);
+}
+
+TEST(CRays, FlagsAreTheBitsOfCpp) {
+  const std::pair<HitFlags, int> flags[] = {{{.degenerate_normal = true}, TSR_HIT_DEGENERATE_NORMAL},
+                                            {{.uncertified = true}, TSR_HIT_UNCERTIFIED},
+                                            {{.incomplete = true}, TSR_HIT_INCOMPLETE},
+                                            {{.tangential = true}, TSR_HIT_TANGENTIAL},
+                                            {{.within_tolerance = true}, TSR_HIT_WITHIN_TOLERANCE},
+                                            {{.seam = true}, TSR_HIT_SEAM}};
+  for (const auto& [in_cpp, in_c] : flags) {
+    std::uint8_t bits = 0;
+    std::memcpy(&bits, &in_cpp, 1);
+    EXPECT_EQ(bits, in_c);
+  }
 }
 
 TEST(CRays, AllHitsOfCpp) {

@@ -351,7 +351,8 @@ enum {
   TSR_HIT_UNCERTIFIED = 4,       /* within the tolerance of the ray, but not proven to be the only root nearby */
   TSR_HIT_INCOMPLETE = 8,        /* there may be other hits */
   TSR_HIT_TANGENTIAL = 16,       /* uncertified, along the tangent plane */
-  TSR_HIT_WITHIN_TOLERANCE = 32  /* uncertified, off the ray by more than rounding */
+  TSR_HIT_WITHIN_TOLERANCE = 32, /* uncertified, off the ray by more than rounding */
+  TSR_HIT_SEAM = 64              /* the ray passes an edge of a shape within its gap */
 };
 /* Hits, one record per ray. A miss has t = infinity, indices of 0xffffffff and 0 elsewhere. */
 typedef struct tsr_hits_out {
