@@ -20,16 +20,16 @@ namespace {
 /// method, by halves where that would leave the root's interval.
 double place_on(const TrimPiece& piece, bool along_u, double value) {
   const auto last = static_cast<std::size_t>(piece.curve.degree());
-  std::array<double, max_degree + 1> c;
+  std::array<double, max_degree + 1> c, of;
   for (std::size_t k = 0; k <= last; ++k)
     c[k] = piece.curve.weight(k) * (along_of(piece.curve.points[k], along_u) - value);
   if (c[0] == 0 || c[last] == 0) return c[0] == 0 ? 0 : 1;
   double low = 0, high = 1, x = std::clamp(c[0] / (c[0] - c[last]), 0.0, 1.0);
   if (last == 1) return x;
   for (int step = 0; step < 60; ++step) {
-    std::array<double, max_degree + 1> of = c;
-    for (std::size_t n = last; n > 1; --n)
-      for (std::size_t k = 0; k < n; ++k) of[k] = (1 - x) * of[k] + x * of[k + 1];
+    const double* from = c.data();
+    for (std::size_t n = last; n > 1; --n, from = of.data())
+      for (std::size_t k = 0; k < n; ++k) of[k] = (1 - x) * from[k] + x * from[k + 1];
     const double at = (1 - x) * of[0] + x * of[1], slope = static_cast<double>(last) * (of[1] - of[0]);
     if (at == 0) return x;
     ((at < 0) == (c[0] < 0) ? low : high) = x;
@@ -64,13 +64,10 @@ bool goes_on(const TrimPiece& before, const TrimPiece& next, Along along, const 
 
 /// A whole border of a patch along an edge.
 struct WholeBorder {
-  std::array<double, 5> quarters;  ///< the edge's parameters at quarters of the border, growing
-  std::uint32_t border;            ///< 4 * patch + side
-
-  bool is_in_step(const WholeBorder& other, double same) const {
-    const auto is_near = [&](double a, double b) { return std::abs(a - b) <= same; };
-    return std::ranges::equal(quarters, other.quarters, is_near);
-  }
+  const EdgeRun* run;
+  double from, to;       ///< the surface's parameters at its ends
+  double low, high;      ///< the edge's parameters there, growing
+  std::uint32_t border;  ///< 4 * patch + side
 };
 
 /// Returns the border along which a run goes; nothing if it goes along a part of one, or through a patch.
@@ -81,13 +78,26 @@ std::optional<WholeBorder> whole_border(const EdgeRuns& runs, const EdgeRun& run
   const Domain& domain = set.sources[run.patch].domain;
   const double begin = along_u ? domain.u0 : domain.v0, end = along_u ? domain.u1 : domain.v1;
   if (ends_of(pieces, along_u) != std::pair(begin, end)) return {};
-  WholeBorder border{{}, 4 * run.patch + static_cast<std::uint32_t>(run.side)};
   const CurveAlongEdge curve = runs.curve(run);
-  for (int k = 0; k <= 4; ++k)
-    border.quarters[static_cast<std::size_t>(k)] =
-        curve.to_edge(parameter_at(pieces, along_u, line_at(begin, end, Segments(4), k)));
-  if (border.quarters.front() > border.quarters.back()) std::ranges::reverse(border.quarters);
-  return border;
+  const auto [low, high] =
+      std::minmax({curve.to_edge(pieces.front().range.from), curve.to_edge(pieces.back().range.to)});
+  return WholeBorder{&run, begin, end, low, high, 4 * run.patch + static_cast<std::uint32_t>(run.side)};
+}
+
+/// Whether two borders have equal parameters of the edge, within `same`, at their ends and at quarters of them.
+bool are_in_step(const EdgeRuns& runs, const WholeBorder& a, const WholeBorder& b, double same) {
+  if (std::abs(a.low - b.low) > same || std::abs(a.high - b.high) > same) return false;
+  const auto quarter = [&](const WholeBorder& of, int k) {
+    const std::span<const TrimPiece> pieces = runs.pieces(*of.run);
+    const bool along_u = runs_along_u(of.run->side);
+    const bool grows = along_of(pieces.front().start(), along_u) < along_of(pieces.back().end(), along_u);
+    const CurveAlongEdge curve = runs.curve(*of.run);
+    const double at = line_at(of.from, of.to, Segments(4), grows == !curve.coedge->reversed ? k : 4 - k);
+    return curve.to_edge(parameter_at(pieces, along_u, at));
+  };
+  for (int k = 1; k <= 3; ++k)
+    if (std::abs(quarter(a, k) - quarter(b, k)) > same) return false;
+  return true;
 }
 
 }  // namespace
@@ -217,11 +227,12 @@ std::vector<std::array<std::uint32_t, 2>> EdgeRuns::borders_in_step(const PatchS
     borders.clear();
     for (const EdgeRun& run : of(edge))
       if (const auto border = whole_border(*this, run, set)) borders.push_back(*border);
-    std::ranges::sort(borders, {}, [](const WholeBorder& of) { return std::pair(of.quarters[0], of.border); });
+    std::ranges::sort(borders, {}, [](const WholeBorder& of) { return std::pair(of.low, of.border); });
     const Interval& range = edges_->edges[edge].range;
     const double same = largest_same_share * (range.to - range.from);
     for (std::size_t k = 1; k < borders.size(); ++k)
-      if (borders[k - 1].is_in_step(borders[k], same)) pairs.push_back({borders[k - 1].border, borders[k].border});
+      if (are_in_step(*this, borders[k - 1], borders[k], same))
+        pairs.push_back({borders[k - 1].border, borders[k].border});
   }
   return pairs;
 }

@@ -41,10 +41,13 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
   const CutPatch* const cut = cut_of(run.patch);
   if (!cut) return;
   const CurveAlongEdge curve = runs_.curve(run);
+  const bool has_neighbours = runs_.edges().faces[run.face].patches.size() > 1;
+  std::uint32_t before = CutPatch::none;  // the vertex where the last chord ends
   auto chord = std::ranges::lower_bound(cut->loop_segments, run.first, {}, &CutPatch::LoopSegment::piece);
   for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord) {
-    join_across(run, *cut, chord->start);
-    join_across(run, *cut, chord->end);
+    if (has_neighbours && chord->start != before) join_across(run, *cut, chord->start);
+    if (has_neighbours) join_across(run, *cut, chord->end);
+    before = chord->end;
     append({.run = &run,
             .low = {run.patch, chord->start},
             .high = {run.patch, chord->end},
@@ -162,7 +165,7 @@ void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uin
   const ParameterPoint& local = cut.vertices[vertex];
   const bool on_u = local.u == 0 || local.u == 1, on_v = local.v == 0 || local.v == 1;
   const PatchEdges::Face& face = runs_.edges().faces[run.face];
-  if ((!on_u && !on_v) || face.patches.size() == 1) return;
+  if (!on_u && !on_v) return;
   const Domain& domain = set_.sources[run.patch].domain;
   if (on_u && on_v)
     return join_corner(face, {local.u == 0 ? domain.u0 : domain.u1, local.v == 0 ? domain.v0 : domain.v1});

@@ -79,7 +79,8 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   std::optional<std::uint32_t> corner_vertex(std::uint32_t patch, bool end_u, bool end_v) const;
   /// Joins the vertices of a face's patches at a corner of them, if the point is one.
   void join_corner(const PatchEdges::Face& face, const ParameterPoint& at);
-  /// Joins a vertex of a chord that lies on a side of its patch to those of the face's other patches there.
+  /// Joins a vertex of a chord that lies on a side of its patch to those of the face's other patches there, of which
+  /// there must be some.
   void join_across(const EdgeRun& run, const CutPatch& cut, std::uint32_t vertex);
 
   const PatchSet::Impl& set_;

@@ -42,6 +42,7 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
     found.clear();
     for (const EdgeRun& run : runs)
       if (!is_whole(run) && runs_->curve(run).coedge->reversed == reversed) divide(run, limits(run.patch), workspace);
+    if (found.empty()) continue;
     stops.insert(stops.end(), found.begin(), found.end());
     sort_distinct(stops, same);
   }
