@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "ray/batch_support.h"
+#include "ray/embree_world.h"
 #include "ray/gaping_shapes.h"
 #include "support/solid_rays.h"
+#include "tessera/ray_embree.h"
 
 namespace tessera::test {
 namespace {
@@ -182,6 +184,27 @@ TEST(EdgeTubes, FiltersDecideAboutEdgesToo) {
       EXPECT_EQ(outputs.flags[k].seam, hits[k].flags.seam) << k;
     }
   }
+}
+
+// A scene of the user's own sees edges as well. Its rays are in float.
+TEST(EdgeTubes, AreInScenesOfUsers) {
+  const Frayed cube;
+  const World world;
+  ASSERT_TRUE(attach(cube.scene, world.scene.get()));
+  rtcCommitScene(world.scene.get());
+  std::size_t seams = 0, differ = 0;
+  for (const Ray& given : cube.at_edges(2000, 4)) {
+    const Ray at = in_float(given);
+    const RTCRayHit found = trace(world.scene.get(), at);
+    const Hit hit = cube.scene.closest(at);
+    ASSERT_EQ(found.hit.geomID != nothing, hit.kind == HitKind::hit);
+    if (hit.kind != HitKind::hit) continue;
+    seams += hit.flags.seam;
+    EXPECT_NEAR(found.ray.tfar, hit.t, 1e-6);
+    differ += found.hit.primID != hit.patch;
+  }
+  EXPECT_GT(seams, 200u);
+  EXPECT_LE(differ, seams / 20);  // where two patches are met at one t in float
 }
 
 // Rays along an edge, within its gap, meet it; those beside it, parallel, do not.

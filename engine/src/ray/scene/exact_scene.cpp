@@ -36,7 +36,8 @@ namespace {
 constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // share of the size
 constexpr std::size_t max_leaves = 0xffffffff;
-constexpr double max_bend = 1;  // share of a piece's length
+constexpr double max_bend = 1;     // share of a piece's length
+constexpr double max_reach = 0.5;  // of tubes beyond the box of pieces, in the scene's coordinates: see embree_ray.h
 const double least_tolerance = 2 * search_rounding(max_degree, max_degree, Leaf::max_halvings, SearchSpace::max_depth);
 constexpr std::size_t min_in_turn = 4;
 static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
@@ -110,9 +111,8 @@ class ExactScene final : public PatchScene, private ExactSource {
   RaySceneOptions options_;
   mutable SearchPool pool_;
   SceneFrame frame_;
-  Box3 box_,
-      scene_box_;  // box of the leaves' control points, in the model's coordinates; of all possible hits, in the
-                   // scene's
+  Box3 box_;        // of the leaves' control points, in the model's coordinates
+  Box3 scene_box_;  // of all possible hits, in the scene's
   double size_ = 0;
   bool follows_;     // the BVH can be updated
   int updates_ = 0;  // since the last build
@@ -125,7 +125,7 @@ void ExactScene::measure() {
   for (std::size_t leaf = 0; leaf < boxes.size(); ++leaf)
     if (!trims_.any() || trims_.use(leaf) != PatchUse::out) scene_box_.extend(boxes[leaf]);
   box_ = {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)};
-  const double reach = std::max({tolerance(), least_tolerance, tubes_.largest_gap()});
+  const double reach = std::max({tolerance(), least_tolerance, std::min(tubes_.largest_gap(), max_reach)});
   scene_box_.lower += Vec3{-reach, -reach, -reach}, scene_box_.upper += Vec3{reach, reach, reach};
 }
 

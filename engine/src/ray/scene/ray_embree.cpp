@@ -22,16 +22,16 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 const ExactSource& source_of(void* user_data) { return *static_cast<const ExactSource*>(user_data); }
 
-/// Returns the box of a leaf in the model's coordinates, with all points that count as hit and every rounding.
+/// Returns the box of a leaf or a tube in the model's coordinates, with all points that count as hit and every rounding.
 void bounds(const RTCBoundsFunctionArguments* arguments) {
   const LeafTracer& tracer = source_of(arguments->geometryUserPtr).tracer();
-  if (tracer.use_of(arguments->primID) == PatchUse::out) {
+  const unsigned k = arguments->primID;
+  const bool is_tube = k >= tracer.first_tube;
+  if (!is_tube && tracer.use_of(k) == PatchUse::out) {
     *arguments->bounds_o = {infinity, infinity, infinity, 0, -infinity, -infinity, -infinity, 0};
     return;
   }
   const SceneFrame& frame = tracer.nets->frame();
-  const unsigned k = arguments->primID;
-  const bool is_tube = k >= tracer.first_tube;
   Vec3 low{-1, -1, -1}, high{1, 1, 1};  // holds every leaf
   try {
     const Box3 box = is_tube ? tracer.tubes->box(k - tracer.first_tube) : tracer.nets->box(*tracer.set, k);

@@ -72,8 +72,8 @@ bool EdgeCurves::has_marked(std::size_t edge, const std::vector<bool>& marks) co
 
 LoopPoint EdgeCurves::at(const EdgeStretch& stretch, double s) const {
   const Interval& range = stretch.piece->range;
-  const double t = stretch.along.to_curve(s);
-  return at_place(stretch, std::clamp((t - range.from) / (range.to - range.from), 0.0, 1.0));
+  const double t = stretch.along.to_curve(s), wide = range.to - range.from;
+  return at_place(stretch, wide > 0 ? std::clamp((t - range.from) / wide, 0.0, 1.0) : 0);
 }
 
 double EdgeCurves::parameter(const EdgeStretch& stretch, double x) const {
@@ -97,9 +97,11 @@ std::vector<VertexLine> EdgeCurves::vertex_lines() const {
   for (const EdgeRun& run : runs_.gaps()) {
     const std::span<const TrimPiece> all = impl_of(edges_->faces[run.face].region).pieces;
     const std::span<const TrimPiece> gap = runs_.pieces(run);
-    const auto before = std::ranges::find_if(all, [&](const TrimPiece& piece) {
+    const auto leads_to_gap = [&](const TrimPiece& piece) {
       return piece.end() == gap.front().start() && runs_.curve(run.face, piece).coedge != nullptr;
-    });
+    };
+    auto before = all.begin() + std::max<std::ptrdiff_t>(run.first, 1) - 1;
+    if (!leads_to_gap(*before)) before = std::ranges::find_if(all, leads_to_gap);
     if (before == all.end()) continue;
     const CurveAlongEdge along = runs_.curve(run.face, *before);
     const PatchEdges::Edge& edge = edges_->edges[edges_->faces[run.face].first_edge + along.coedge->edge];

@@ -14,6 +14,7 @@ constexpr int samples = 4;               // intervals of a piece between them
 constexpr double margin = 2;             // of gaps beyond what samples show
 constexpr double flat = 1.0 / 32;        // share of a chord's length that its curve may leave it
 constexpr int max_halvings = 6;          // of a piece
+constexpr std::size_t max_centres = 8;   // that are tried at a vertex
 constexpr std::uint32_t max_chords = 4;  // of a tube
 
 double share_of(int k) { return static_cast<double>(k) / samples; }
@@ -232,8 +233,10 @@ void EdgeTubes::hold_vertices(double least) {
     const auto end = std::find_if(begin, all.end(), [&](const EdgeEnd& of) { return of.vertex != begin->vertex; });
     const EdgeEnd* nearest = nullptr;
     double reach = 0;
-    for (auto centre = begin; centre != end; ++centre) {
+    std::size_t tried = 0;
+    for (auto centre = begin; centre != end && tried < max_centres; ++centre) {
       if (!centre->is_centre || first_chord_[centre->edge] == first_chord_[centre->edge + 1]) continue;
+      ++tried;
       double farthest = 0;
       for (auto of = begin; of != end; ++of)
         farthest = std::max(farthest, length(of->position - centre->position) + of->unsure + centre->unsure);

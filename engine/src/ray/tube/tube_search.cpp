@@ -67,7 +67,8 @@ struct Nearest {
   double share, distance;
 };
 
-/// Distances from the part of a line between two places.
+/// Distances from a line. Parts behind its start do not count. Those beyond its end do, if they are near it: the nearest
+/// point decides whether the line ends before it.
 class NearLine {
  public:
   using Point = SeenPoint;
@@ -83,13 +84,10 @@ class NearLine {
   }
   std::optional<Nearest> nearest(const Part<SeenPoint>& part) const {
     const SeenPoint &a = part.start, &b = part.end;
-    const double ds = b.s - a.s;
-    double low = 0, high = 1;
-    if (a.s < near_ - part.off) low = b.s < near_ - part.off ? 2 : (near_ - part.off - a.s) / ds;
-    if (b.s < near_ - part.off) high = std::min(high, (near_ - part.off - a.s) / ds);
-    if (a.s > far_ + part.off) low = b.s > far_ + part.off ? 2 : std::max(low, (far_ + part.off - a.s) / ds);
-    if (b.s > far_ + part.off) high = std::min(high, (far_ + part.off - a.s) / ds);
-    if (!(low <= high)) return {};
+    const double from = near_ - part.off, ds = b.s - a.s;
+    if (std::max(a.s, b.s) < from || std::min(a.s, b.s) > far_ + part.off) return {};
+    const double low = a.s < from ? std::min((from - a.s) / ds, 1.0) : 0;
+    const double high = b.s < from ? std::clamp((from - a.s) / ds, low, 1.0) : 1;
     const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
     const double share = square > 0 ? std::clamp(-(a.x * dx + a.y * dy) / square, low, high) : low;
     return Nearest{share, std::hypot(a.x + share * dx, a.y + share * dy)};
@@ -141,7 +139,7 @@ void EdgeTubes::search(unsigned index, RayQuery& query) const {
       best.patch = point.patch, best.u = point.u, best.v = point.v;
       best.s = at.s, best.residual = residual;
     });
-  if (!found) return;
+  if (!found || best.s > line.far) return;
   const NearPoint origin(line.start + line.near * line.direction);
   TubeWalk from_origin(*set_, frame_, tube.gap, origin);
   bool holds_origin = false;
@@ -149,7 +147,7 @@ void EdgeTubes::search(unsigned index, RayQuery& query) const {
     if (!holds_origin) from_origin.walk(chord, [&](const LoopPoint&) { holds_origin = true; });
   if (holds_origin) return;
   best.certified = best.is_seam = true;
-  best.s = std::clamp(best.s, line.near, line.far);
+  best.s = std::max(best.s, line.near);
   query.take_seam(best, tube.gap);
 }
 
