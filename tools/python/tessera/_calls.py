@@ -47,7 +47,9 @@ def call(function: Any, *arguments: Any) -> None:
         raise _error(status)
 
 
-def run(function: Any, *arguments: Any, is_long: bool = True, progress: Progress | None = None, makes: Any = None) -> None:
+def run(
+    function: Any, *arguments: Any, is_long: bool = True, progress: Progress | None = None, makes: Any = None
+) -> None:
     """Calls a function whose last argument is a tsr_run.
 
     A long call of the main thread runs in a thread of its own, so that an interrupt (Ctrl-C) ends it. ``makes``: the
@@ -68,7 +70,9 @@ def run(function: Any, *arguments: Any, is_long: bool = True, progress: Progress
 class _Run:
     """A long call. It keeps what the call uses until the call ends."""
 
-    def __init__(self, function: Any, arguments: tuple[Any, ...], count: int, progress: Progress | None, makes: Any) -> None:
+    def __init__(
+        self, function: Any, arguments: tuple[Any, ...], count: int, progress: Progress | None, makes: Any
+    ) -> None:
         self._cancel = ctypes.c_uint8()
         options = struct("tsr_run")
         options.threads = count

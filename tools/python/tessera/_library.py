@@ -147,6 +147,9 @@ def _places() -> list[pathlib.Path]:
     if (here.parents[2] / "engine" / "include").is_dir():
         built = here.parents[2].glob("build/*/engine/libtessera_c.so")
         places += sorted(built, key=lambda file: file.stat().st_mtime, reverse=True)
+    # Installed by CMake: PREFIX/lib/pythonX/dist-packages/tessera.
+    above = here.parents[2]
+    places += [above / "libtessera_c.so.0", *above.glob("*-linux-gnu/libtessera_c.so.0")]
     return places
 
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 class Error(Exception):
     """An error of Tessera.
 
-    ``code`` names the reason, such as ``"non_finite"``; ``message`` says what was found and what was expected; ``index``
-    is the element that the message names (a surface, a patch, a ray), or None.
+    ``code`` names the reason, such as ``"non_finite"``; ``message`` says what was found and what was expected;
+    ``index`` is the element that the message names (a surface, a patch, a ray), or None.
 
     >>> import tessera as ts
     >>> try:
@@ -28,7 +28,8 @@ class Error(Exception):
 
 
 class ArgumentError(Error, ValueError):
-    """A value, a shape or a length that a call cannot use, and the content of a file that does not follow its format."""
+    """A value, a shape or a length that a call cannot use, and the content of a file that does not follow its
+    format."""
 
 
 class ArgumentTypeError(Error, TypeError):

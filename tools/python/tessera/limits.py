@@ -22,8 +22,8 @@ class Limits:
 
 
 def limits(store_bytes: int = 0) -> Limits:
-    """Measures this machine on the calling thread, in a fraction of a second. ``store_bytes``: the size of the output in
-    question; 0: 160 MiB."""
+    """Measures this machine on the calling thread, in a fraction of a second. ``store_bytes``: the size of the output
+    in question; 0: 160 MiB."""
     info = struct("tsr_limits_info")
     call(library.tsr_limits, store_bytes, ctypes.byref(info))
     return Limits(**{name: getattr(info, name) for name in Limits.__dataclass_fields__})

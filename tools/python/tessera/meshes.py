@@ -22,8 +22,8 @@ _RELATIVE, _SHARE, _QUADS, _FEWEST, _SMALLEST, _DOUBLE, _APART = (1 << k for k i
 
 @dataclass(frozen=True)
 class View:
-    """A camera. ``field_of_view``: radians, across the shorter side of the picture; ``extent``: parallel rays instead, and
-    the length that the shorter side shows; ``near_distance``: a thousandth of the target's distance by default."""
+    """A camera. ``field_of_view``: radians, across the shorter side of the picture; ``extent``: parallel rays instead,
+    and the length that the shorter side shows; ``near_distance``: a thousandth of the target's distance by default."""
 
     eye: Any
     target: Any
@@ -129,8 +129,8 @@ class Mesh:
     - ``uv`` (n, 2): float32, parameters of the patch
     - ``faces`` (m, 3), ``patches`` (m,): uint32, vertices counter-clockwise, and the patch of each triangle
     - ``quads`` (q, 4), ``quad_patches`` (q,): uint32
-    - ``bound``: the proven distance between surfaces and mesh; ``gap``: how far faces fail to meet at edges of the model;
-      ``angle``, ``pixels``: proven, 0 if not wanted; ``open_edges``: edges of one triangle
+    - ``bound``: the proven distance between surfaces and mesh; ``gap``: how far faces fail to meet at edges of the
+      model; ``angle``, ``pixels``: proven, 0 if not wanted; ``open_edges``: edges of one triangle
 
     >>> import tessera as ts
     >>> mesh = ts.read(goblet).patches().tessellate(rates=8)
@@ -218,8 +218,8 @@ class Mesh:
         return mesh
 
     def update(self, progress: Progress | None = None) -> bool:
-        """Follows edits of the patches: proves the limits again and moves the vertices. Returns whether the mesh has other
-        triangles now; then its arrays are new views."""
+        """Follows edits of the patches: proves the limits again and moves the vertices. Returns whether the mesh has
+        other triangles now; then its arrays are new views."""
         if self._set is None:
             raise StateError("the mesh was not made of patches", "stale")
         if self._plan is None:  # a mesh that was pickled
@@ -294,6 +294,11 @@ class Mesh:
         parts += [f"within {self.pixels:.3g} pixels"] * (self.pixels > 0)
         proven = ", ".join(parts) if self.is_proven else "unproven"
         return f"<Mesh {len(self.vertices):,} vertices, {len(self.faces):,} triangles{quads}, {proven}>"
+
+    def _repr_html_(self) -> str:
+        from .view import html_of
+
+        return html_of(self)
 
     def __getstate__(self) -> dict[str, Any]:
         state = {name: value for name, value in self.__dict__.items() if name not in ("_plan", "_store")}

@@ -203,7 +203,7 @@ class Model(Handle):
         return Assembly(self, tolerance, **options)
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Writes the surfaces (.json, .obj, .bpt); with options, such as a tolerance, their meshes (.glb, .ply, ...)."""
+        """Writes the surfaces (.json, .obj, .bpt); with options, such as a tolerance, their meshes (.glb, .ply)."""
         if options:
             self.tessellate(**options).save(path)
         else:
@@ -218,6 +218,9 @@ class Model(Handle):
         names = [name for name in (self._text(_SURFACE, k) for k in range(min(info.surfaces, 5))) if name]
         shown = ": " + _shown(names, info.surfaces - len(names)) if names else ""
         return f"<Model {', '.join(parts)}{shown}>"
+
+    def _repr_html_(self) -> str:
+        return self.patches()._repr_html_()
 
     def __reduce__(self) -> tuple[Any, ...]:
         source = self._source

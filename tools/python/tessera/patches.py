@@ -154,8 +154,8 @@ class PatchSet(Handle):
     ) -> Jets:
         """Evaluates all patches at ``u`` x ``v``, both in [0, 1]: arrays of shape (patches, len(u), len(v), ...).
 
-        Derivatives are by the patch's parameters. Positions in float32 are relative to ``origin``; for float64 make the set
-        with ``double=True``.
+        Derivatives are by the patch's parameters. Positions in float32 are relative to ``origin``; for float64 make
+        the set with ``double=True``.
 
         >>> import tessera as ts
         >>> ts.read(goblet).patches().grid([0, 0.5, 1], [0, 1]).position.shape
@@ -191,8 +191,9 @@ class PatchSet(Handle):
         - ``pixels``: the largest distance in the picture of ``view``
         - ``rates``: segments of every patch per direction, which prove nothing
         - ``max_triangles``: an error beyond; without any other limit: as good a mesh as so many triangles make
-        - ``quads``: whole cells are quads; ``share_vertices``: patches share vertices by index; ``fewest``: fewer triangles
-          at a hundred times the time; ``weld``, ``crease_angle``, ``max_gap``, ``close_edges``: how patches and faces meet
+        - ``quads``: whole cells are quads; ``share_vertices``: patches share vertices by index; ``fewest``: fewer
+          triangles at a hundred times the time; ``weld``, ``crease_angle``, ``max_gap``, ``close_edges``: how patches
+          and faces meet
         - ``dtype=np.float64``: vertices in double, in the model
         - ``out``: an earlier mesh, to write into the same memory if it is large enough
         - ``progress``: called with a share from 0 to 1; an exception in it ends the call
@@ -222,6 +223,11 @@ class PatchSet(Handle):
             f"<PatchSet {info.patches:,} patch{'es' * (info.patches != 1)}{cut}, {info.surfaces:,} "
             f"surface{'s' * (info.surfaces != 1)}, size {size:.3g}{fit}>"
         )
+
+    def _repr_html_(self) -> str:
+        from .view import html_of
+
+        return html_of(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         edited = sorted(self._edited)

@@ -40,10 +40,10 @@ MISS, HIT, INVALID_RAY = range(3)
 class Hits:
     """The hits of rays, an array per quantity. A miss has t = inf, indices of 0xffffffff and 0 elsewhere.
 
-    ``kind``: MISS, HIT or INVALID_RAY; ``flags``: bits of TSR_HIT_* in tessera_c.h; ``surface``, ``patch``; ``t``; ``uv`` in the
-    surface's parameters and ``patch_uv`` in the patch's; ``position`` and unit ``normal``; ``du``, ``dv`` by the surface's
-    parameters; ``residual``: the distance from the ray. An array is None if it was not wanted. Made of arrays of the
-    caller, it is where to write to: ``Hits(t=array)``.
+    ``kind``: MISS, HIT or INVALID_RAY; ``flags``: bits of TSR_HIT_* in tessera_c.h; ``surface``, ``patch``; ``t``;
+    ``uv`` in the surface's parameters and ``patch_uv`` in the patch's; ``position`` and unit ``normal``; ``du``,
+    ``dv`` by the surface's parameters; ``residual``: the distance from the ray. An array is None if it was not wanted.
+    Made of arrays of the caller, it is where to write to: ``Hits(t=array)``.
     """
 
     kind: np.ndarray | None = None
@@ -115,7 +115,10 @@ class _Rays:
     def __init__(self, origins: Any, directions: Any, tnear: Any, tfar: Any, spawn_offset: Any) -> None:
         is_float = all(getattr(value, "dtype", None) == np.float32 for value in (origins, directions))
         dtype = np.float32 if is_float else np.float64
-        vectors = {"origin": vectors_of("origins", origins, dtype), "direction": vectors_of("directions", directions, dtype)}
+        vectors = {
+            "origin": vectors_of("origins", origins, dtype),
+            "direction": vectors_of("directions", directions, dtype),
+        }
         scalars = {"tnear": tnear, "tfar": tfar, "spawn_offset": spawn_offset}
         scalars = {name: array_of(name, value, dtype) for name, value in scalars.items() if value is not None}
         shapes = {name: array.shape[:-1] for name, array in vectors.items()}
@@ -143,7 +146,8 @@ class _Rays:
 
 class Scene(Handle):
     """Patches prepared for rays: origin + t * direction. Directions need no unit length. Arrays of shape (..., 3)
-    broadcast, and so do ``tnear`` (0), ``tfar`` (infinity) and ``spawn_offset``: how far from the origin surfaces do not count.
+    broadcast, and so do ``tnear`` (0), ``tfar`` (infinity) and ``spawn_offset``: how far from the origin surfaces do
+    not count.
 
     >>> import numpy as np, tessera as ts
     >>> scene = ts.read(goblet).patches().rays()
@@ -217,7 +221,8 @@ class Scene(Handle):
         spawn_offset: Any = None,
         quantities: Sequence[str] | None = None,
     ) -> tuple[np.ndarray, Hits]:
-        """Returns ``first`` and all hits, ray after ray, by growing t: those of ray k are first[k] to first[k + 1] - 1."""
+        """Returns ``first`` and all hits, ray after ray, by growing t: those of ray k are
+        first[k] to first[k + 1] - 1."""
         rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
         found = Handle()
         handle = ctypes.c_void_p()

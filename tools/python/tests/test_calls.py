@@ -162,7 +162,8 @@ def test_released_objects_raise_errors():
 
 def test_import_takes_nothing_else():
     names = "trimesh", "pyvista", "open3d", "meshio", "matplotlib", "IPython", "multiprocessing", "json", "html"
-    lines = f"import sys, numpy\nbefore = set(sys.modules)\nimport tessera\nprint(*[n for n in {names} if n in sys.modules and n not in before])"
+    code = "import sys, numpy; before = set(sys.modules); import tessera; "
+    code += f"print(*{set(names)} & set(sys.modules) - before)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
-    found = subprocess.run([sys.executable, "-c", lines], env=environment, check=True, capture_output=True, text=True)
+    found = subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True)
     assert found.stdout.strip() == ""

@@ -149,7 +149,8 @@ def test_errors_keep_code_index_and_message(tmp_path):
     ],
 )
 def test_bad_splines(change, words):
-    good = {"degree": 1, "knots": ([0, 0, 1, 1], [0, 0, 1, 1]), "points": [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]]}
+    knots, points = [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]]
+    good = {"degree": 1, "knots": (knots, knots), "points": points}
     ts.nurbs(**good)
     with pytest.raises(ts.Error, match=words):
         ts.nurbs(**{**good, **change})

@@ -1,0 +1,67 @@
+"""The view of notebooks: what it holds, and its size."""
+
+import base64
+import html
+import json
+import re
+
+import numpy as np
+
+import tessera as ts
+from conftest import wavy
+
+
+def data_of(text):
+    page = html.unescape(re.search(r'srcdoc="([^"]*)"', text)[1])
+    return page, json.loads(re.search(r"const data = (\{.*\});", page)[1])
+
+
+def test_a_view_holds_the_mesh(goblet):
+    mesh = goblet.patches().tessellate(1e-2)
+    page, data = data_of(mesh._repr_html_())
+    faces = np.frombuffer(base64.b64decode(data["faces"]), np.uint16).reshape(-1, 3)
+    assert (faces == mesh.faces).all() and data["count"] == faces.size and not data["wide"]
+    positions = np.frombuffer(base64.b64decode(data["positions"]), np.uint16).reshape(-1, 3)
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    assert np.abs(low + positions / 65535.0 * (high - low) - mesh.vertices).max() < 1e-4
+    x, y = np.frombuffer(base64.b64decode(data["normals"]), np.int8).reshape(-1, 2).T / 127
+    z = 1 - np.abs(x) - np.abs(y)
+    below = z < 0
+    x, y = (
+        np.where(below, (1 - np.abs(y)) * np.where(x < 0, -1, 1), x),
+        np.where(below, (1 - np.abs(x)) * np.where(y < 0, -1, 1), y),
+    )
+    normals = np.stack([x, y, z], axis=1)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    assert np.abs(normals - mesh.normals).max() < 3e-2
+    assert "Mesh " in page and "http" not in page and "@" not in page.split("<script>")[0]
+
+
+def test_fifty_thousand_triangles_take_two_megabytes_at_most(goblet):
+    patches = goblet.patches()
+    mesh = patches.tessellate(max_triangles=50_000)
+    assert 40_000 < len(mesh.faces) <= 50_000
+    assert len(mesh._repr_html_()) <= 2_000_000
+    # As many vertices as a mesh can have, with indices of four bytes.
+    cells = ts.bezier(wavy(158, 158, 1)).patches().tessellate(rates=1)
+    assert len(cells.faces) > 49_000 and len(cells.vertices) == 2 * len(cells.faces)
+    assert 1_000_000 < len(cells._repr_html_()) <= 2_000_000
+
+
+def test_larger_meshes_are_shown_with_fewer_triangles(goblet):
+    mesh = goblet.patches().tessellate(1e-4)
+    assert len(mesh.faces) > 100_000
+    page, data = data_of(mesh._repr_html_())
+    assert data["count"] <= 150_000 and f"{len(mesh.faces):,} triangles" in page and "shown with" in page
+
+
+def test_views_of_models_sets_and_meshes_without_normals(goblet):
+    assert "PatchSet 44 patches" in data_of(goblet._repr_html_())[0]
+    shared = goblet.patches().tessellate(1e-2, share_vertices=True, quads=True)
+    assert data_of(shared._repr_html_())[1]["count"] == 3 * len(shared.triangles())
+
+
+def test_names_cannot_leave_the_frame():
+    model = ts.bezier([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]], name='"><script>alert(1)</script>')
+    text = model._repr_html_()
+    assert text.count("<script>") == 0 and text.startswith("<iframe ") and text.endswith("</iframe>")
