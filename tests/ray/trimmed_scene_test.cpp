@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "block/unjoined_faces.h"
@@ -11,6 +12,7 @@
 #include "tessera/edge_matching.h"
 #include "tessera/ray_embree.h"
 #include "tessera/trim_region.h"
+#include "trim/trim_piece.h"
 
 namespace tessera::test {
 namespace {
@@ -278,6 +280,24 @@ TEST(TrimmedScene, RaysAlongAPlaneMeetWhatIsKept) {
   EXPECT_GE(hit.t, 2 - 1e-9);
   EXPECT_LE(hit.t, 2.25);
   EXPECT_EQ(scene.closest(ray({-1, 0.5, 1}, {1, 0, 0})).kind, HitKind::miss);
+}
+
+/// A loop around most of a 4 x 3 domain, of that many straight pieces.
+TrimLoop round_polygon(int corners) {
+  std::vector<Vec3> points;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / corners;
+    points.push_back({2 + 1.8 * std::cos(angle), 1.5 + 1.3 * std::sin(angle), 0});
+  }
+  return polygon(points);
+}
+
+// The cells of a region grow with its pieces: by at least a cell of 4 bytes and an entry of 64 for each.
+TEST(TrimmedScene, MemoryHoldsTheCellsOfRegions) {
+  const Face few(plane(), {round_polygon(8)}), many(plane(), {round_polygon(4008)});
+  const RayScene small = value_of(RayScene::make(few.set)), large = value_of(RayScene::make(many.set));
+  EXPECT_GT(large.memory_bytes(), small.memory_bytes() + 4000 * (sizeof(TrimPiece) + 68));
+  EXPECT_LT(large.memory_bytes(), small.memory_bytes() + 4000 * 2000);
 }
 
 TEST(TrimmedScene, InstancesAndRefitsKeepTheLoops) {

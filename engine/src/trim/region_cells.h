@@ -89,6 +89,11 @@ class RegionCells {
     }
   }
 
+  std::size_t memory_bytes() const {
+    return grids_.capacity() * sizeof(CellGrid) + cells_.capacity() * sizeof(Cell) +
+           entries_.capacity() * sizeof(CellEntry);
+  }
+
  private:
   friend class CellsBuilder;
   TrimSide locate_in_list(const std::vector<TrimPiece>& pieces, Cell cell, double u, double v) const {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "base/impl_access.h"
 #include "parallel/parallel_for.h"
 #include "trim/trim_region_impl.h"
 
@@ -95,18 +95,8 @@ class SquareMarker {
 
 Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execution& execution) {
   set_ = &set.impl();
-  trims_ = set.impl().trims;
-  if (!trims_) return {};
+  if (Status status = regions_.build(set, execution); !status.ok() || !regions_.any()) return status;
   const Execution quiet{.cancel = execution.cancel};
-  std::vector<std::optional<TrimRegion>> made(trims_->regions.size());
-  const auto locate_points = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) made[k].emplace(TrimRegion::Impl::for_points(trims_->regions[k]));
-  };
-  if (Status status = parallel_for(made.size(), 1, quiet, locate_points); !status.ok()) return status;
-  regions_.clear();
-  for (std::optional<TrimRegion>& region : made) regions_.push_back(*std::move(region));
-  regions_of_.assign(set.patch_count(), std::uint32_t{no_id});
-  for (const PatchTrims::Cut& cut : trims_->cuts) regions_of_[cut.patch] = cut.region;
   squares_.resize(leaves.size());
   const auto find_squares = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) squares_[k] = squares_of(set, leaves[k]);
@@ -116,13 +106,12 @@ Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execut
 
 KeptSquares LeafTrims::squares_of(const SetView& set, Leaf& leaf) const {
   KeptSquares squares;
-  if (!trims_->is_cut[leaf.patch]) {
+  if (!regions_.is_cut(leaf.patch)) {
     squares.inside = ~std::uint64_t{0};
     return squares;
   }
-  const TrimRegion& region = regions_[regions_of_[leaf.patch]];
-  const auto cut = std::ranges::lower_bound(trims_->cuts, leaf.patch, {}, &PatchTrims::Cut::patch);
-  const std::span<const std::uint32_t> pieces = impl_of(region).pieces_of(cut->place);
+  const TrimRegion& region = regions_.of(leaf.patch);
+  const std::span<const std::uint32_t> pieces = regions_.pieces_of(leaf.patch);
   const Domain& patch = set.source(leaf.patch).domain;
   KeptPart kept = kept_part(region, pieces, rectangle_of(patch, leaf));
   for (int k = 0; k < max_shrinks && kept.use == PatchUse::cut && shrink(leaf, patch, kept.hull); ++k)
@@ -139,13 +128,13 @@ Domain LeafTrims::around(std::uint32_t patch, double u, double v, double reach_u
 }
 
 TrimSide LeafTrims::side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const {
-  return impl_of(regions_[regions_of_[patch]]).cells.locate_all(around(patch, u, v, reach_u, reach_v));
+  return impl_of(regions_.of(patch)).cells.locate_all(around(patch, u, v, reach_u, reach_v));
 }
 
 // The root may lie anywhere in a rectangle about it. A loop that passes through has corners on both sides of it, unless
 // it turns back inside: then it is as near as rounding.
 TrimSide LeafTrims::side_of(const LeafRoot& root) const {
-  const TrimRegion& region = regions_[regions_of_[root.patch]];
+  const TrimRegion& region = regions_.of(root.patch);
   const double off = root.residual + root.noise;
   const Domain box = around(root.patch, root.u, root.v, reach_u(root, off), reach_v(root, off));
   if (const TrimSide all = impl_of(region).cells.locate_all(box); all != TrimSide::border) return all;

@@ -3,13 +3,12 @@
 // and whether roots there are kept.
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "block/patch_trims.h"
 #include "ray/leaf/kept_part.h"
 #include "ray/leaf/leaf_nets.h"
+#include "ray/leaf/patch_regions.h"
 #include "ray/line/ray_query.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"
@@ -23,7 +22,7 @@ class LeafTrims final : public RootSides {
   /// patches may be edited, its loops not. Errors: cancelled, out_of_memory.
   Status build(const SetView& set, std::span<Leaf> leaves, const Execution& execution);
   /// Whether any patch is cut; otherwise no other call is allowed.
-  bool any() const { return trims_ != nullptr; }
+  bool any() const { return regions_.any(); }
   PatchUse use(std::size_t leaf) const { return squares_[leaf].use(); }
   /// What is kept of a leaf, by squares.
   const KeptSquares& squares(std::size_t leaf) const { return squares_[leaf]; }
@@ -32,19 +31,15 @@ class LeafTrims final : public RootSides {
   TrimSide side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
   /// The side of a root of a cut leaf. `border`: the loops pass between the places where the root may be.
   TrimSide side_of(const LeafRoot& root) const override;
-  std::size_t memory_bytes() const {
-    return squares_.capacity() * sizeof(KeptSquares) + regions_of_.capacity() * sizeof(std::uint32_t);
-  }
+  std::size_t memory_bytes() const { return squares_.capacity() * sizeof(KeptSquares) + regions_.memory_bytes(); }
 
  private:
   KeptSquares squares_of(const SetView& set, Leaf& leaf) const;
   Domain around(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
 
-  std::shared_ptr<const PatchTrims> trims_;
   const PatchSet::Impl* set_ = nullptr;
-  std::vector<TrimRegion> regions_;        ///< as those of `trims_`, and they locate points
-  std::vector<std::uint32_t> regions_of_;  ///< `[patch]`: into `regions_`, if it is cut
-  std::vector<KeptSquares> squares_;       ///< `[leaf]`
+  PatchRegions regions_;
+  std::vector<KeptSquares> squares_;  ///< `[leaf]`
 };
 
 }  // namespace tessera::inline abi_0_1
