@@ -292,6 +292,46 @@ TrimLoop round_polygon(int corners) {
   return polygon(points);
 }
 
+/// Compares closest hits in grid mode with those in exact mode, and occlusion with closest hits. Only silhouettes differ.
+void expect_grid_as_exact(const Face& face, const std::vector<Ray>& rays) {
+  const TrimRegion region = value_of(TrimRegion::make(*face.model.surfaces[0].trims, face.grid));
+  const RayScene exact = value_of(RayScene::make(face.set));
+  const RayScene grid = value_of(RayScene::make(face.set, RaySceneOptions{.mode = RayMode::grid, .rate = 16}));
+  const std::vector<Hit> expected = closest(exact, rays), hits = closest(grid, rays);
+  std::vector<std::uint8_t> dark(rays.size());
+  ASSERT_TRUE(grid.occluded(rays, dark).ok());
+  std::size_t met = 0, passed = 0, other = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const bool is_hit = hits[k].kind == HitKind::hit;
+    if (is_hit) {
+      EXPECT_NE(region.locate(hits[k].u, hits[k].v), TrimSide::outside) << k;
+    }
+    const bool is_same = hits[k].kind == expected[k].kind && (!is_hit || std::abs(hits[k].t - expected[k].t) < 1e-6);
+    other += !is_same || (dark[k] != 0) != is_hit;
+    ++(is_hit ? met : passed);
+  }
+  EXPECT_LT(other, rays.size() / 200);
+  EXPECT_GT(met, rays.size() / 20);
+  EXPECT_GT(passed, rays.size() / 20);
+}
+
+TEST(TrimmedScene, GridModeHoldsWhatLoopsKeep) {
+  for (const BSplineSurface& surface : {plane(), wavy(), cylinder()}) {
+    const Face face(surface, outline_with_holes());
+    expect_grid_as_exact(face, rays_through(face.grid.box(), 2000, 70));
+    std::vector<Ray> rows;  // in packets
+    const Vec3 eye = face.grid.box().centre() + Vec3{3, 4, 20};
+    for (int k = 0; k < 2500; ++k) {
+      const Box3& box = face.grid.box();
+      const double x = (k % 50 + 0.5) / 50, y = (k / 50 + 0.5) / 50;
+      const Vec3 at{box.lower.x + x * (box.upper.x - box.lower.x), box.lower.y + y * (box.upper.y - box.lower.y),
+                    box.centre().z};
+      rows.push_back(ray(eye, at - eye));
+    }
+    expect_grid_as_exact(face, rows);
+  }
+}
+
 // The cells of a region grow with its pieces: by at least a cell of 4 bytes and an entry of 64 for each.
 TEST(TrimmedScene, MemoryHoldsTheCellsOfRegions) {
   const Face few(plane(), {round_polygon(8)}), many(plane(), {round_polygon(4008)});

@@ -25,7 +25,7 @@ namespace tessera::inline abi_0_1 {
 /// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
   /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
-  /// surface. It shows what the tessellation shows, with true t, u, v and normals. Trimmed patches are met as wholes.
+  /// surface. It shows what the tessellation shows, with true t, u, v and normals. Rays meet what loops keep of that.
   /// The facets decide what is met and in which order. A silhouette may be missed or flagged. If two surfaces lie
   /// nearer to each other than to their facets, the farther one may be returned.
   grid,

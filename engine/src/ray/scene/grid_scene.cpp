@@ -11,6 +11,7 @@
 #include "ray/facet/facet_source.h"
 #include "ray/facet/packet_refine.h"
 #include "ray/facet/refine.h"
+#include "ray/leaf/patch_regions.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
@@ -44,15 +45,17 @@ bool coherent(std::span<const RaySegment> segments, double size) {
 
 class GridScene final : public PatchScene {
  public:
-  GridScene(const PatchSet& set, std::unique_ptr<FacetSource> facets, EmbreeScene scene, bool refines, Isa isa)
+  GridScene(const PatchSet& set, std::unique_ptr<FacetSource> facets, EmbreeScene scene, bool refines, bool has_holes,
+            Isa isa)
       : PatchScene(set),
         facets_(std::move(facets)),
         scene_(std::move(scene)),
         refines_(refines),
+        has_holes_(has_holes),
         kernels_(ray_kernels(isa)) {}
 
   std::size_t memory_bytes() const override {
-    return facets_->memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
+    return facets_->memory_bytes() + regions_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
   }
 
  private:
@@ -78,6 +81,9 @@ class GridScene final : public PatchScene {
   void trace(std::span<const RaySegment> segments, std::span<FacetHit> facets) const;
   Hit hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet) const;
   bool refine(const RaySegment& segment, const FacetHit& facet, SurfaceRoot& root) const;
+  bool is_cut_away(const SurfaceRoot& root) const;
+  FacetHit facet_behind(const RaySegment& segment, const FacetHit& facet) const;
+  bool meets_kept_facet(const RaySegment& segment) const;
   bool accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined, Hit& hit) const;
 
   FacetHit closest_facet(const FacetRay& ray) const { return located(scene_.closest(ray)); }
@@ -86,6 +92,8 @@ class GridScene final : public PatchScene {
   std::unique_ptr<FacetSource> facets_;  // borrowed by scene_
   EmbreeScene scene_;
   bool refines_;
+  bool has_holes_;  // the facets do: then all of them are kept
+  PatchRegions regions_;
   const kernel::RayKernels& kernels_;
   Adjacency adjacency_;
   Box3 set_box_;  // in the model's coordinates
@@ -113,6 +121,9 @@ Status GridScene::build(const Execution& execution) {
   const double reach = std::max(max_abs(set_box_.lower - set().origin()), max_abs(set_box_.upper - set().origin()));
   if (!(size_ >= smallest_size && reach <= largest_size)) {
     return Status(StatusCode::unsupported, "a ray scene holds models of a size from 1e-9 to 1e12: scale the model");
+  }
+  if (!has_holes_ && !regions_.any()) {
+    if (Status status = regions_.build(set(), execution); !status.ok()) return status;
   }
   // Until the BVH is complete nothing may trace in it, so a failure before that leaves the scene stale.
   if (Status status = facets_->build(set(), scene_, execution); !status.ok()) return status;
@@ -174,14 +185,25 @@ Hit GridScene::hit_of(const Ray& ray, const RaySegment& segment, FacetHit facet)
     SurfaceRoot root;
     const bool refined = refine(segment, facet, root);
     if (accept(ray, segment, root, refined, hit)) return hit;
-    // Embree treats a denormal tnear as 0, and would find a facet at 0 again forever.
-    const float next = std::nextafter(facet.t, std::numeric_limits<float>::max());
-    const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
-    if (!(behind.tnear <= behind.tfar)) break;
-    const FlushDenormals flush;
-    facet = closest_facet(behind);
+    facet = facet_behind(segment, facet);
   }
   return {};
+}
+
+/// Returns the first facet behind another.
+FacetHit GridScene::facet_behind(const RaySegment& segment, const FacetHit& facet) const {
+  // Embree treats a denormal tnear as 0, and would find a facet at 0 again forever.
+  const float next = std::nextafter(facet.t, std::numeric_limits<float>::max());
+  const FacetRay behind = segment.facet_ray(std::max(next, std::numeric_limits<float>::min()));
+  if (!(behind.tnear <= behind.tfar)) return {};
+  const FlushDenormals flush;
+  return closest_facet(behind);
+}
+
+/// Returns whether loops cut away a point of a patch.
+bool GridScene::is_cut_away(const SurfaceRoot& root) const {
+  return regions_.any() &&
+         regions_.side_of(root.patch, set().source(root.patch).domain, root.u, root.v) == TrimSide::outside;
 }
 
 /// Moves a facet's hit to the surface. If that fails, `root` is the facet's own point.
@@ -193,11 +215,12 @@ bool GridScene::refine(const RaySegment& segment, const FacetHit& facet, Surface
   return false;
 }
 
-/// Returns false if t is not between the ray's ends.
+/// Returns false if t is not between the ray's ends, or if loops cut the point away.
 bool GridScene::accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined,
                        Hit& hit) const {
   hit.t = segment.t_at(root.s);
   if (!(hit.t >= ray.tnear && hit.t <= ray.tfar) || !std::isfinite(hit.t)) return false;
+  if (is_cut_away(root)) return false;
 
   hit.flags.unrefined = !refined;
   set_surface_point(set(), size_, 1, root.patch, root.u, root.v, {root.position, root.du, root.dv}, hit);
@@ -226,6 +249,10 @@ void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_
     if (is_valid(rays[k])) segments[k] = cut(rays[k], set().origin(), box_, 0);
   }
   const std::span<const RaySegment> used = std::span(segments).first(rays.size());
+  if (regions_.any()) {
+    for (std::size_t k = 0; k < used.size(); ++k) occluded[k] = !used[k].empty && meets_kept_facet(used[k]);
+    return;
+  }
   const FlushDenormals flush;
   if (used.size() > 1 && coherent(used, size_)) {
     Packet packet;
@@ -238,18 +265,29 @@ void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_
   }
 }
 
-}  // namespace
+/// Returns whether the ray meets a facet whose point of the surface loops keep.
+bool GridScene::meets_kept_facet(const RaySegment& segment) const {
+  const auto first = [&] {
+    const FlushDenormals flush;
+    return closest_facet(segment.facet_ray());
+  };
+  for (FacetHit facet = first(); facet.hit(); facet = facet_behind(segment, facet)) {
+    SurfaceRoot root;
+    refine(segment, facet, root);
+    if (!is_cut_away(root)) return true;
+  }
+  return false;
+}
 
-namespace {
-
+/// `has_holes`: the facets have those of the loops.
 Result<std::unique_ptr<RayScene::Impl>> scene_of(const PatchSet& set, std::unique_ptr<FacetSource> facets,
-                                                 const RaySceneOptions& options) {
+                                                 const RaySceneOptions& options, bool has_holes) {
   const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   Result<EmbreeScene> scene = EmbreeScene::make();
   if (!scene) return scene.status();
   return std::unique_ptr<RayScene::Impl>(
-      std::make_unique<GridScene>(set, std::move(facets), *std::move(scene), options.refine, *isa));
+      std::make_unique<GridScene>(set, std::move(facets), *std::move(scene), options.refine, has_holes, *isa));
 }
 
 }  // namespace
@@ -261,12 +299,12 @@ Result<std::unique_ptr<RayScene::Impl>> make_grid_scene(const PatchSet& set, con
   }
   Result<std::unique_ptr<FacetSource>> facets = grid_facets(set, options.rate, options.isa);
   if (!facets) return facets.status();
-  return scene_of(set, *std::move(facets), options);
+  return scene_of(set, *std::move(facets), options, false);
 }
 
 Result<std::unique_ptr<RayScene::Impl>> make_mesh_scene(const PatchSet& set, const Mesh& mesh,
                                                         const RaySceneOptions& options) {
-  return scene_of(set, mesh_facets(mesh), options);
+  return scene_of(set, mesh_facets(mesh), options, true);
 }
 
 }  // namespace tessera::inline abi_0_1
