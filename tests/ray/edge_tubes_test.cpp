@@ -53,6 +53,9 @@ TEST(EdgeTubes, FrayedCubesAreTight) {
     }
 }
 
+// At each corner of the cube a triangle is missing.
+TEST(EdgeTubes, CornersThatAreCutOffAreTight) { expect_tight(FrayedCube({1e-3, false, 0.01}, 5).shape()); }
+
 TEST(EdgeTubes, DrilledPlatesAreTight) {
   for (const double gap : {1e-2, 1e-4, 1e-7}) expect_tight(gaping_plate(gap));
 }
@@ -294,12 +297,12 @@ TEST(EdgeTubes, AppearWhereBordersPart) {
   PatchSet set = value_of(make_patch_set(shape));
   RayScene scene = value_of(RayScene::make(set, RaySceneOptions{.editable = true}));
   std::vector<Vec3> points(set.patch(0).points().begin(), set.patch(0).points().end());
-  for (Vec3& p : points) p.z -= 1e-3;
+  for (Vec3& p : points) p.z += 1e-3;  // inwards, so that the scene keeps its frame
   ASSERT_TRUE(set.set_control_points(0, points).ok());
   ASSERT_TRUE(scene.refit().ok());
   const std::vector<double> gaps = value_of(scene.edge_gaps());
   EXPECT_EQ(std::ranges::count_if(gaps, [](double gap) { return gap > 1e-3; }), 4);
-  const Hit hit = scene.closest(ray({-1, 0.5, -5e-4}, {1, 0, 0}));
+  const Hit hit = scene.closest(ray({0.5, -5e-4, -1}, {0, 0, 1}));
   EXPECT_EQ(hit.kind, HitKind::hit);
   EXPECT_TRUE(hit.flags.seam);
 }

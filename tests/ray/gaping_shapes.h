@@ -15,6 +15,7 @@ namespace tessera::test {
 struct Fray {
   double size = 1e-3;         ///< of tilts and of the loops' teeth, at most
   bool open_corners = false;  ///< whether also the curves of one loop end apart
+  double cut_off = 0;         ///< how far from the corners curves end; straight lines join them
 };
 
 /// A unit cube. Each face is a larger, tilted plane, and its loop has teeth where other faces have other ones.
@@ -71,8 +72,9 @@ class FrayedCube {
     shape_.faces.push_back({{.name = {}, .surface = plane, .trims = std::vector<TrimLoop>{loop}}, {}, {}});
   }
 
-  Curve teeth(const Vec3& from, const Vec3& to) {
+  Curve teeth(const Vec3& start, const Vec3& end) {
     constexpr int count = 7;
+    const Vec3 from = start + fray_.cut_off * (end - start), to = end - fray_.cut_off * (end - start);
     std::vector<Vec3> points{from};
     std::vector<double> knots{0, 0};
     for (int k = 1; k < count; ++k) {
