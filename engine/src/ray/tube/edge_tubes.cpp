@@ -64,6 +64,7 @@ void EdgeTubes::cut(const EdgeStretch& stretch, std::uint32_t index, double from
 /// Measures the distances of other faces' points from the first curve: at its own samples, and at theirs.
 void EdgeTubes::measure(std::span<const EdgeCurve> curves, std::span<TubeChord> chords,
                         std::span<double> measured) const {
+  if (chords.empty()) return;
   std::vector<double> ends;  // parameters of the edge
   const auto note = [&](double& distance, const LoopPoint& a, const LoopPoint& b) {
     distance = std::max(distance, length(a.position - b.position) + a.unsure + b.unsure);
