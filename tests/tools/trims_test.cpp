@@ -44,15 +44,12 @@ TEST_F(Trims, DecideWhatIsMeshed) {
   EXPECT_NEAR(area({"--grid", "2x2", "--untrimmed"}), 1, 1e-6);
 }
 
-TEST_F(Trims, AreSaidWhereRaysTakeSurfacesWhole) {
+TEST_F(Trims, AreKeptByRaysOfBothModes) {
   for (const Names& command : {Names{"raycast", "trimmed.obj", "-o", "a.png", "--size", "16x16", "--shade", "uv"},
                                Names{"raycast", "trimmed.obj", "-o", "a.exr", "--size", "16x16"}}) {
-    EXPECT_EQ(output_of(command).find("trimmed:"), std::string::npos);  // exact rays see what loops keep
     Names by_facets = command;
     by_facets.insert(by_facets.end(), {"--mode", "grid"});
-    const ToolRun result = run(by_facets);
-    EXPECT_EQ(result.status, 0) << result.errors;
-    EXPECT_EQ(result.errors, "tessera: warning: trimmed.obj: 1 surface is trimmed: taken whole\n");
+    for (const Names& rays : {command, by_facets}) EXPECT_EQ(output_of(rays).find("trimmed:"), std::string::npos);
   }
   for (const Names& command : {Names{"info", "trimmed.obj"}, Names{"eval", "trimmed.obj", "--grid", "2x2"},
                                Names{"raycast", "trimmed.obj", "--terminal", "--size", "16x16"}})
@@ -68,10 +65,11 @@ TEST_F(Trims, AreInTheFacts) {
 }
 
 TEST_F(Trims, ThePictureSaysSo) {
-  const Names options{"--size", "400x300", "--json", "--mode", "grid"};
+  const Names options{"--size", "400x300", "--json"};
   Names plain{"raycast", "plain.obj", "-o", "plain.png"}, trimmed{"raycast", "trimmed.obj", "-o", "trimmed.png"};
   plain.insert(plain.end(), options.begin(), options.end());
   trimmed.insert(trimmed.end(), options.begin(), options.end());
+  trimmed.push_back("--edges");
   EXPECT_EQ(json::parse(output_of(plain))["caption"], "");
   const json report = json::parse(run(trimmed).output);
   const std::string caption = report["caption"];
@@ -93,13 +91,13 @@ TEST_F(Trims, ThePictureSaysSo) {
 
 TEST_F(Trims, SmallPicturesSayItShorter) {
   for (const char* const size : {"150x40", "50x40", "20x12", "16x9", "9x5", "1x1"}) {
-    const ToolRun result = run({"raycast", "trimmed.obj", "-o", "a.png", "--size", size, "--mode", "grid"});
+    const ToolRun result = run({"raycast", "trimmed.obj", "-o", "a.png", "--size", size, "--edges"});
     EXPECT_EQ(result.status, 0) << result.errors;
   }
 }
 
 TEST_F(Trims, TheTerminalSaysSo) {
-  EXPECT_NE(run({"raycast", "trimmed.obj", "--terminal", "--size", "16x16", "--mode", "grid"})
+  EXPECT_NE(run({"raycast", "trimmed.obj", "--terminal", "--size", "16x16", "--edges"})
                 .output.find("\ntrimmed.obj: 1 surface is trimmed: drawn by a mesh within "),
             std::string::npos);
 }
@@ -111,15 +109,29 @@ TEST_F(Trims, RaysHitWhatLoopsKeep) {
     for (int j = 0; j < side; ++j)
       rays += std::to_string((i + 0.5) / side) + "," + std::to_string((j + 0.5) / side) + ",5,0,0,-1\n";
   folder_.file("rays.csv", rays);
-  const auto hits = [&](const std::string& file) {
-    output_of({"raycast", file, "--rays", "rays.csv", "--hits", "hits.csv"});
-    const std::string table = content_of(folder_ / "hits.csv");
+  const auto hits = [&](const std::string& file, const std::string& mode) {
+    output_of({"raycast", file, "--rays", "rays.csv", "--hits", "hits.csv", "--mode", mode});
     std::size_t count = 0;
-    for (std::size_t at = table.find(",1,"); at != std::string::npos; at = table.find(",1,", at + 1)) ++count;
+    for (const std::vector<std::string>& row : cells_of(content_of(folder_ / "hits.csv"))) count += row[1] == "1";
     return count;
   };
-  EXPECT_EQ(hits("plain.obj"), std::size_t{side * side});
-  EXPECT_NEAR(static_cast<double>(hits("trimmed.obj")) / (side * side), 0.18, 0.03);
+  for (const char* const mode : {"exact", "grid"}) {
+    EXPECT_EQ(hits("plain.obj", mode), std::size_t{side * side});
+    EXPECT_NEAR(static_cast<double>(hits("trimmed.obj", mode)) / (side * side), 0.18, 0.03);
+  }
+}
+
+TEST_F(Trims, HitsNameTheirFaces) {
+  folder_.file("named.json", R"({"format": "tessera", "version": 1, "surfaces": [
+    {"kind": "bezier", "name": "wall", "points": [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]},
+    {"kind": "bezier", "name": "bore, \"left\"", "points": [[[2, 0, 0], [2, 1, 0]], [[3, 0, 0], [3, 1, 0]]]}]})");
+  folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0.5,0.5,5,0,0,-1\n2.5,0.5,5,0,0,-1\n9,9,5,0,0,-1\n");
+  output_of({"raycast", "named.json", "--rays", "rays.csv", "--hits", "hits.csv"});
+  const std::string table = content_of(folder_ / "hits.csv");
+  EXPECT_NE(table.find("nz,name\n"), std::string::npos);
+  EXPECT_NE(table.find(",wall\n"), std::string::npos);
+  EXPECT_NE(table.find(",\"bore, \"\"left\"\"\"\n"), std::string::npos);
+  EXPECT_NE(table.find("\n2,0,,,,,,,,,,,,\n"), std::string::npos);
 }
 
 }  // namespace

@@ -7,14 +7,22 @@
 namespace tessera::cli {
 namespace {
 
-constexpr std::string_view header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz\n";
+constexpr std::string_view header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz,name\n";
 
 void write_miss(OutputFile& out, std::size_t ray) {
   out.write_number(ray);
-  out.write(",0,,,,,,,,,,,\n");
+  out.write(",0,,,,,,,,,,,,\n");
 }
 
-void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
+/// Writes a text as a field: in quotes if it needs them, each of its own quotes twice (RFC 4180).
+void write_field(OutputFile& out, std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return out.write(text);
+  out.write('"');
+  for (const char c : text) out.write(c == '"' ? "\"\"" : std::string_view(&c, 1));
+  out.write('"');
+}
+
+void write_hit(OutputFile& out, std::size_t ray, const Hit& hit, const std::string& name) {
   constexpr int digits = 17;
   out.write_number(ray);
   out.write(",1,");
@@ -28,6 +36,8 @@ void write_hit(OutputFile& out, std::size_t ray, const Hit& hit) {
     out.write(',');
     out.write_number(value, digits);
   }
+  out.write(',');
+  write_field(out, name);
   out.write('\n');
 }
 
@@ -47,11 +57,12 @@ HitCounts use_own_parameters(const Model& model, HitLists& lists) {
   return counts;
 }
 
-void write_hits(OutputFile& out, const HitLists& lists) {
+void write_hits(OutputFile& out, const Model& model, const HitLists& lists) {
   out.write(header);
   for (std::size_t ray = 0; ray + 1 < lists.first.size() && !out.failed(); ++ray) {
     if (lists.first[ray] == lists.first[ray + 1]) write_miss(out, ray);
-    for (std::size_t k = lists.first[ray]; k < lists.first[ray + 1]; ++k) write_hit(out, ray, lists.hits[k]);
+    for (std::size_t k = lists.first[ray]; k < lists.first[ray + 1]; ++k)
+      write_hit(out, ray, lists.hits[k], model.surfaces[lists.hits[k].surface].name);
   }
 }
 

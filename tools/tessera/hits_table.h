@@ -19,8 +19,8 @@ struct HitCounts {
 /// Converts u and v to the surfaces' own parameters, and counts.
 HitCounts use_own_parameters(const Model& model, HitLists& lists);
 
-/// Writes ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz: a row for each hit; for a ray without hits one row with hit = 0
+/// Writes ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz,name, the last that of the surface or face: a row for each hit; for a ray without hits one row with hit = 0
 /// and empty fields.
-void write_hits(OutputFile& out, const HitLists& lists);
+void write_hits(OutputFile& out, const Model& model, const HitLists& lists);
 
 }  // namespace tessera::cli

@@ -39,13 +39,12 @@ struct RaycastScene {
   std::vector<std::optional<Colour>> colours = {};   ///< of the patches of surfaces; none: no face has a colour
   double mesh_bound = 0;                             ///< of the mesh that surfaces are drawn by; 0 if they are not
   bool keeps_trims = false;                          ///< whether that mesh is of what loops keep
-  bool ignores_trims = false;                        ///< whether trimmed surfaces are taken whole
 
   /// The options' settings, with what this scene adds.
   render::Settings settings(const RaycastOptions& options) const;
   /// Captions for the lower border of the picture, the longest first. The first that fits is drawn.
   std::vector<std::string> captions() const;
-  /// How surfaces are drawn, as "2 surfaces are trimmed: taken whole"; empty if rays meet all of them as they are.
+  /// How surfaces are drawn, as "drawn by a mesh within 0.001 of the surfaces"; empty if rays meet them as they are.
   std::string surfaces_caption() const;
   std::string counted_parts() const;  ///< "32 patches", "1 triangle"
 };

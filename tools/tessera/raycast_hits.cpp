@@ -36,7 +36,7 @@ Status write_ray_hits(const Job& job, const RaycastOptions& options, const Commo
   const HitCounts counts = use_own_parameters(scene.loaded.model, *lists);
   {
     const auto phase = timings.phase("write");
-    write_hits(out, *lists);
+    write_hits(out, scene.loaded.model, *lists);
     if (Status status = out.commit(); !status.ok()) return status;
   }
   const bool exact = options.mode == RayMode::exact;

@@ -157,23 +157,13 @@ Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& op
   if (!loaded) return loaded.status();
   Result<PatchSet> set = pack(*loaded, options.models, timings);
   if (!set) return set.status();
-  const bool needs_mesh = set->cut_count() > 0 && options.mode == RayMode::grid;  // whose facets are whole patches
-  if ((needs_mesh || options.edges) && shows_shape(job, options))
-    return make_drawn_scene(*std::move(loaded), *set, options, timings);
+  if (options.edges && shows_shape(job, options)) return make_drawn_scene(*std::move(loaded), *set, options, timings);
   if (options.edges)
     return Status(StatusCode::invalid_argument, "--edges needs --shade lambert, normals or clay, and a .png picture");
-  if (needs_mesh) {
-    warn(loaded->files[0] + ": " + trims_text(loaded->trimmed()) + ": taken whole");
-    ModelOptions whole = options.models;
-    whole.untrimmed = true;
-    set = pack(*loaded, whole, timings);
-    if (!set) return set.status();
-  }
   Result<RayScene> rays = build(*set, options, loaded->files[0], timings);
   if (!rays) return rays.status();
   RaycastScene scene{*std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
   scene.colours = colours_of(scene.loaded.model, scene.set);
-  scene.ignores_trims = needs_mesh;
   if (options.settings.shade == render::Shade::error) {
     const auto phase = timings.phase("measure");
     Result<MeshError> error = measure_error(options.error, scene.set);
@@ -204,13 +194,10 @@ render::Settings RaycastScene::settings(const RaycastOptions& options) const {
 
 std::vector<std::string> RaycastScene::captions() const {
   std::vector<std::string> texts;
-  if (error) texts = {error->caption() + (ignores_trims ? ", trims ignored" : "")};
-  if (mesh_bound > 0) {
+  if (error) texts = {error->caption()};
+  if (mesh_bound > 0)
     texts.insert(texts.end(),
                  {surfaces_caption(), keeps_trims ? "trimmed, drawn by a mesh" : "drawn by a mesh", "mesh"});
-  } else if (ignores_trims) {
-    texts.insert(texts.end(), {surfaces_caption(), "trims ignored", "trims!"});
-  }
   return texts;
 }
 
@@ -218,7 +205,6 @@ std::string RaycastScene::surfaces_caption() const {
   const std::string mesh = "drawn by a mesh within " + readable(mesh_bound, 2) + " of ";
   if (mesh_bound > 0 && keeps_trims) return trims_text(loaded.trimmed()) + ": " + mesh + "what is kept";
   if (mesh_bound > 0) return mesh + "the surfaces";
-  if (ignores_trims) return trims_text(loaded.trimmed()) + ": taken whole";
   return {};
 }
 
