@@ -140,12 +140,12 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
     if ((lanes >> lane & 1u) == 0 || packet.rays.state[lane] == kernel::RayPacket::nothing) continue;
     RayQuery& query = *packet.queries[lane];
     query.trims = nullptr;
-    const kernel::RayRoot root = root_of(packet.rays, lane);
+    const auto root = [&] { return root_of(packet.rays, lane); };
     const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
-    const TrimSide side = has_root && is_cut ? side_of(leaf, root) : TrimSide::inside;
+    const TrimSide side = has_root && is_cut ? side_of(leaf, root()) : TrimSide::inside;
     if (side == TrimSide::outside) continue;
     const bool any = query.wanted == RootsWanted::any && query.filter == nullptr;
-    if (has_root && any && side == TrimSide::inside && lies_between(root, query.line)) {
+    if (has_root && any && side == TrimSide::inside && lies_between(root(), query.line)) {
       query.found = true;
       ++query.steps;
     } else {
@@ -156,13 +156,11 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
   return roots.lanes == 0 ? open : open | take_roots(leaf, packet, roots);
 }
 
-/// Takes a root without gains, unless it is near a loop and rounding leaves its side undecided: then returns false.
-bool LeafTracer::take_root(RayQuery& query, bool is_near_loop, LeafRoot& root) const {
-  query.trims = is_near_loop ? trims : nullptr;
-  if (is_near_loop && !set_gain(seen({root.position, root.du, root.dv}, query.line), 1, 1, root)) return false;
-  ++query.steps;
-  query.take(root);
-  return true;
+/// Prepares a root near a loop: the query asks on which side of it the root lies. Returns false if rounding leaves that
+/// undecided. Not inlined, so that other roots cost no more for it.
+[[gnu::noinline]] bool LeafTracer::take_gain(RayQuery& query, LeafRoot& root) const {
+  query.trims = trims;
+  return set_gain(seen({root.position, root.du, root.dv}, query.line), 1, 1, root);
 }
 
 /// Takes the roots of these lanes. Returns the lanes that rounding leaves undecided.
@@ -189,8 +187,14 @@ unsigned LeafTracer::take_roots(const Leaf& leaf, QueryPacket& packet, const Pac
     root.s = rays.s[lane];
     root.residual = rounding;
     root.certified = true;
-    const bool is_found = rays.state[lane] == kernel::PolishedRays::found;
-    if (!is_found || !take_root(*packet.queries[lane], roots.near_loops >> lane & 1u, root)) open |= 1u << lane;
+    RayQuery& query = *packet.queries[lane];
+    if (rays.state[lane] != kernel::PolishedRays::found ||
+        ((roots.near_loops >> lane & 1u) != 0 && !take_gain(query, root))) {
+      open |= 1u << lane;
+      continue;
+    }
+    ++query.steps;
+    query.take(root);
   }
   return open;
 }
@@ -205,7 +209,12 @@ unsigned LeafTracer::take_each_root(const Leaf& leaf, QueryPacket& packet, const
     root.patch = leaf.patch;
     const bool is_found = polish(set->patch(leaf.patch), nets->frame(), *kernels, query.line,
                                  start_of(leaf, root_of(packet.rays, lane)), false, root);
-    if (!is_found || !take_root(query, roots.near_loops >> lane & 1u, root)) open |= 1u << lane;
+    if (!is_found || ((roots.near_loops >> lane & 1u) != 0 && !take_gain(query, root))) {
+      open |= 1u << lane;
+      continue;
+    }
+    ++query.steps;
+    query.take(root);
   }
   return open;
 }

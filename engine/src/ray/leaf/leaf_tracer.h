@@ -77,7 +77,7 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   };
   unsigned take_roots(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const;
   unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const;
-  bool take_root(RayQuery& query, bool is_near_loop, LeafRoot& root) const;
+  bool take_gain(RayQuery& query, LeafRoot& root) const;
   bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const;
   bool take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const;
 };
