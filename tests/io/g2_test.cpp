@@ -11,10 +11,6 @@
 #include "io/reader_checks.h"
 #include "support/errors.h"
 #include "support/synthetic_sets.h"
-#include "tessera/edge_matching.h"
-#include "tessera/mesh.h"
-#include "tessera/tessellation.h"
-#include "tessera/topology.h"
 #include "tessera/trim_region.h"
 
 namespace tessera::test {
@@ -375,27 +371,6 @@ TEST(G2, LoopsThatAreWrong) {
   expect_refused(
       parse_g2("210 1 0 0\n250\n3\n0 0 0\n0 0 1\n1 0 0\n0\n0\n1\n1 0.1\n0 120 0\n2\n0 0\n1 0\n1\n0 4\n0\n", "m"),
       StatusCode::parse_error, Status::no_index, "its loops enclose nothing");
-}
-
-// Trimmed faces without topology, whose edges CAD curves state to 1e-4: vertices that nearly coincide along an edge must
-// not draw its ends together. Lines that close gaps in loops cross from patch to patch, and loops pass corners of patches
-// within rounding.
-TEST(G2, RealFacesAreJoinedOverSmallGapsAlone) {
-  const char* const data = std::getenv("TESSERA_TEST_DATA");
-  if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
-  const Model model = value_of(read_model(std::filesystem::path(data) / "g2_gotools" / "splipy_winglet_from_step.g2"));
-  const Shape shape = value_of(joined_shape(model.surfaces, 1.4e-3));
-  EXPECT_EQ(value_of(closed_shells(shape)), std::vector<bool>{true});
-  const PatchSet set = value_of(make_patch_set(shape));
-  for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4}) {
-    const Tessellation plan = value_of(Tessellation::make(set, {.tolerance = tolerance, .relative = true}));
-    EXPECT_LT(plan.gap(), 2e-3) << tolerance;
-    EXPECT_GT(plan.gap(), 1e-4) << tolerance;
-    EXPECT_EQ(plan.open_edges(), 0u) << tolerance;
-    Mesh mesh = value_of(plan.allocate());
-    ASSERT_TRUE(plan.run(set, mesh.views()).ok());
-    EXPECT_EQ(value_of(check(mesh)).open_edges, 0u) << tolerance;
-  }
 }
 
 }  // namespace
