@@ -203,7 +203,7 @@ typedef struct tsr_patch_info {
  * `weights`, where these are not NULL. */
 tsr_status tsr_set_patch(const tsr_set* set, size_t patch, tsr_patch_info* info, double* points, double* weights);
 /* Sets all control points of some patches: those of patches[k] follow those of patches[k - 1]. `point_count` is that of
- * all. Plans and scenes are stale until they are updated. */
+ * all. Plans and scenes are stale until they are updated. After an error at patches[index] those before it are set. */
 tsr_status tsr_set_edit(tsr_set* set, const uint32_t* patches, size_t count, const double* points, size_t point_count);
 
 /* Outputs of an evaluation; null data: not computed. Vectors have three components, the rest one. */

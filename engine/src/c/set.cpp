@@ -30,6 +30,12 @@ CStatus check_options(const tsr_set_options& options, const Model& model) {
   return {};
 }
 
+/// Reads the outputs of an evaluation at `u` and `v`, none of which may be null.
+CStatus read_jets(const void* u, const void* v, const tsr_jets* out, tsr_jets& jets) {
+  if (!u || !v || !out) return null_pointer(!u ? "u" : !v ? "v" : "out");
+  return read_struct("tsr_jets", out, jets);
+}
+
 /// Views of all outputs that are wanted.
 template <class T>
 CStatus views_of(const tsr_jets& out, QuantityViews<T>& views) {
@@ -186,9 +192,8 @@ tsr_status tsr_set_grid(const tsr_set* set, const double* u, size_t count_u, con
   return c_call([&]() -> CStatus {
     const Held<CSet> of(set);
     if (!of) return of.error();
-    if (!u || !v || !out) return null_pointer(!u ? "u" : !v ? "v" : "out");
     tsr_jets jets{};
-    if (CStatus status = read_struct("tsr_jets", out, jets); status.code) return status;
+    if (CStatus status = read_jets(u, v, out, jets); status.code) return status;
     const Reading reading(of->usage);
     if (!reading) return in_use(Object::Kind::set);
     return run_work(run, [&](const Execution& execution) {
@@ -203,9 +208,8 @@ tsr_status tsr_set_evaluate(const tsr_set* set, const tsr_in* surface, const tsr
   return c_call([&]() -> CStatus {
     const Held<CSet> of(set);
     if (!of) return of.error();
-    if (!u || !v || !out) return null_pointer(!u ? "u" : !v ? "v" : "out");
     tsr_jets jets{};
-    if (CStatus status = read_struct("tsr_jets", out, jets); status.code) return status;
+    if (CStatus status = read_jets(u, v, out, jets); status.code) return status;
     if (!jets.is_double) return CStatus(TSR_UNSUPPORTED, "scattered points are evaluated in double: set is_double");
     SurfaceSamples samples;
     if (surface)
