@@ -1,4 +1,4 @@
-// What the interface for C costs: the same work through C and through C++, in turn, in the same memory, best of several.
+// The cost of the interface for C: equal work through C and through C++, in turn, in the same memory, best of several.
 // Results are compared byte for byte before anything is printed.
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-"""What the examples in docstrings and the tests share."""
+"""Shared by the tests and by the examples in docstrings."""
 
 import pathlib
 

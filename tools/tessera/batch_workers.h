@@ -17,7 +17,7 @@ struct WorkerLimits {
   std::uint64_t memory = 0;  ///< bytes of a worker's address space beyond what it has; 0: no limit
 };
 
-/// What became of a job.
+/// The outcome of a job.
 struct JobResult {
   Status status;
   std::string output;      ///< what it has printed

@@ -23,8 +23,8 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// A named surface, its placement in the model, and the loops that trim it. Grids and rays ignore the loops so far:
-/// they see each patch of a set as a whole. Copies share everything.
+/// A named surface, its placement in the model, and the loops that trim it. Grids ignore the loops: they see each patch
+/// of a set as a whole. Copies share everything.
 struct ModelSurface {
   Shared<std::string> name;                  ///< may be empty
   Surface surface;                           ///< in its own space

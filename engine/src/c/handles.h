@@ -9,7 +9,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What a handle stands for.
+/// An object that a handle stands for.
 class Object {
  public:
   enum class Kind : std::uint8_t { model, set, plan, scene, hits };

@@ -119,7 +119,7 @@ class RegionCells {
                         cell[above + right].kind() == kind;
     return is_one ? static_cast<TrimSide>(kind) : TrimSide::border;
   }
-  /// As locate_all(), by strips alone. A strip's value falls with u (a <= 0).
+  /// Locates as locate_all() does, by strips alone. A strip's value falls with u (a <= 0).
   TrimSide locate_all_in_list(Cell cell, const Domain& box) const {
     std::uint32_t parity = cell.kind() & 1;
     for (const CellEntry* entry = &entries_[cell.index()];; ++entry) {

@@ -8,7 +8,7 @@
 """
 
 from ._calls import threads
-from . import _library
+from ._library import library as _functions
 from .assemblies import Assembly
 from .errors import (
     ArgumentError,
@@ -27,7 +27,7 @@ from .models import Instance, Model, Spline, Surface, bezier, model, nurbs, pars
 from .patches import Patch, PatchSet
 from .rays import HIT, INVALID_RAY, MISS, Hits, Scene
 
-_number = _library.library.tsr_version()
+_number = _functions.tsr_version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [

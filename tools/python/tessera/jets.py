@@ -43,7 +43,7 @@ _LONG = 20_000  # points, below which a call is over at once
 
 
 class Jets:
-    """What an evaluation wrote: one array per quantity, of shape (..., 3) or (...); None if it was not wanted.
+    """The output of an evaluation: one array per quantity, of shape (..., 3) or (...); None if it was not wanted.
 
     ``position``, ``du``, ``dv``, ``duu``, ``duv``, ``dvv``; ``normal``, unit, along du x dv; ``first_form`` (E, F, G)
     and ``second_form`` (L, M, N); ``gaussian`` and ``mean`` curvature; ``first_curvature`` >= ``second_curvature`` and

@@ -14,7 +14,7 @@ from ._library import library, struct
 
 @dataclass(frozen=True)
 class Limits:
-    """Of one thread: fused multiply-adds per second in float and in double, and bytes stored per second."""
+    """Rates of one thread: fused multiply-adds per second in float and in double, and bytes stored per second."""
 
     float_operations_per_second: float
     double_operations_per_second: float

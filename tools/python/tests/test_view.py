@@ -42,7 +42,7 @@ def test_fifty_thousand_triangles_take_two_megabytes_at_most(goblet):
     mesh = patches.tessellate(max_triangles=50_000)
     assert 40_000 < len(mesh.faces) <= 50_000
     assert len(mesh._repr_html_()) <= 2_000_000
-    # As many vertices as a mesh can have, with indices of four bytes.
+    # The most vertices that a mesh can have, with indices of four bytes.
     cells = ts.bezier(wavy(158, 158, 1)).patches().tessellate(rates=1)
     assert len(cells.faces) > 49_000 and len(cells.vertices) == 2 * len(cells.faces)
     assert 1_000_000 < len(cells._repr_html_()) <= 2_000_000

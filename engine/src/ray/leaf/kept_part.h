@@ -1,5 +1,5 @@
 #pragma once
-// What the loops of a face keep of a rectangle of a patch: a hull of it, and a coarse map.
+// The part of a patch's rectangle that the loops of a face keep: a hull of it, and a coarse map.
 
 #include <algorithm>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct KeptPart {
 /// at corners that are kept. So the hull holds the pieces within the rectangle, and these corners.
 KeptPart kept_part(const TrimRegion& region, std::span<const std::uint32_t> pieces, const Domain& rectangle);
 
-/// What loops keep of a rectangle by 8 x 8 squares of it: bit 8 i + j is that of square (i, j) along u and v.
+/// The kept part of a rectangle by 8 x 8 squares of it: bit 8 i + j is that of square (i, j) along u and v.
 struct KeptSquares {
   static constexpr unsigned per_side = 8;
   std::uint64_t inside = 0, outside = 0;  ///< squares that are kept or cut away as wholes

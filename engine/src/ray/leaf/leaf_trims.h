@@ -24,7 +24,7 @@ class LeafTrims final : public RootSides {
   /// Whether any patch is cut; otherwise no other call is allowed.
   bool any() const { return regions_.any(); }
   PatchUse use(std::size_t leaf) const { return squares_[leaf].use(); }
-  /// What is kept of a leaf, by squares.
+  /// The kept part of a leaf, by squares.
   const KeptSquares& squares(std::size_t leaf) const { return squares_[leaf]; }
   /// The side of all points of a cut leaf's patch within (u +- reach_u, v +- reach_v). `border`: a loop passes near, and
   /// only side_of() may tell.

@@ -35,7 +35,7 @@ struct EdgeStretch {
   double high() const { return std::max(from, to); }
 };
 
-/// What one face has along an edge: stretches by growing parameters of the edge.
+/// The curve of one face along an edge: stretches by growing parameters of the edge.
 using EdgeCurve = std::vector<EdgeStretch>;
 
 /// Whether two parameters of an edge are one.

@@ -28,7 +28,7 @@ double off_chord(const std::array<Vec3, samples + 1>& at) {
 
 }  // namespace
 
-/// What one edge adds.
+/// The additions of one edge.
 struct EdgeTubes::EdgeParts {
   std::vector<TubeChord> chords;
   std::vector<double> measured;

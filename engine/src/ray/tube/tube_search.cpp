@@ -132,7 +132,7 @@ void EdgeTubes::search(unsigned index, RayQuery& query) const {
     walk.walk(chord, [&](const LoopPoint& point) {
       const SeenPoint at = near.see(point.position);
       const double residual = std::hypot(at.x, at.y);
-      // Of one passage the nearest point counts, of several the first.
+      // The nearest point of one passage counts, and the first passage of several.
       const bool is_better = std::abs(at.s - best.s) > 2 * tube.gap ? at.s < best.s : residual < best.residual;
       if (found && !is_better) return;
       found = true;
