@@ -18,14 +18,12 @@ namespace {
 using namespace tessera;
 
 constexpr char usage[] =
-    "tessera_solid_report [MODEL or FOLDER...]\n\n"
-    "Whether rays leak into the closed solids of CAD files, or out of them, or cross them an odd number of times; of "
-    "the\n"
-    "project's models if none is named.\n"
+    "tessera_solid_report [--rays N] [MODEL or FOLDER...]\n\n"
+    "Whether rays leak into the closed solids of CAD files, or out of them, or cross them an odd number of times; of\n"
+    "the project's models if none is named. --rays sets the rays for each solid [100000].\n"
     "Exit status 1 if there is one.\n";
-constexpr std::size_t rays = 100000;
 
-bool report(const std::string& name, const Shape& shape) {
+bool report(const std::string& name, const Shape& shape, std::size_t rays) {
   const Result<PatchSet> set = make_patch_set(shape);
   if (!set) return true;
   const Result<RayScene> scene = RayScene::make(*set);
@@ -59,7 +57,7 @@ int main(int argc, char** argv) {
         std::printf("%s is not closed\n", name.c_str());
         continue;
       }
-      good = report(name, shape) && good;
+      good = report(name, shape, asked.rays) && good;
     }
   }
   return good ? 0 : 1;

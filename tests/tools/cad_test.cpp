@@ -44,6 +44,25 @@ TEST_F(CadTool, RealPartsAreMeshedAndDrawn) {
   }
 }
 
+TEST_F(CadTool, HitsTellTheFaceAndWhetherTheRayPassesAnEdge) {
+  const std::string block = TESSERA_SOURCE_DIR "/tools/models/bearing_block.step";
+  folder_.file("rays.csv",
+               "ox,oy,oz,dx,dy,dz\n"
+               "100,-220,205,-100,200,-150\n"    // at a vertex of the bearing's rim, (0, -20, 55)
+               "100,-220,205.3,-100,200,-150\n"  // a little above it
+               "100,-220,205,100,200,150\n");
+  const json facts = json::parse(output_of({"raycast", block, "--rays", "rays.csv", "--hits", "a.csv", "--json"}));
+  EXPECT_EQ(facts["hits"], 2);
+  EXPECT_EQ(facts["seam"], 1);
+  const auto rows = cells_of(content_of(folder_ / "a.csv"));
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[1][13], "1");
+  EXPECT_NEAR(std::stod(rows[1][2]), 1, 1e-6);
+  EXPECT_EQ(rows[2][13], "0");
+  EXPECT_EQ(rows[3][13], "");
+  EXPECT_NE(rows[2][14], "");
+}
+
 TEST_F(CadTool, TheBearingBlockIsMeshedClosedAndDrawnInItsColours) {
   const std::string block = TESSERA_SOURCE_DIR "/tools/models/bearing_block.step";
   const json facts = json::parse(output_of({"tessellate", block, "-o", "a.ply", "--json"}));

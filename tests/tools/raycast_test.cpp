@@ -188,17 +188,18 @@ TEST_F(RaycastTool, HitsLieOnTheirSurfacesAndRays) {
   output_of({"raycast", teapot, "--rays", "rays.csv", "--hits", "hits.csv"});
   const auto rows = cells_of(content_of(folder_ / "hits.csv"));
   ASSERT_EQ(rows.size(), rays.size() + 1);
-  EXPECT_EQ(rows[0], (Names{"ray", "hit", "t", "surface", "patch", "u", "v", "x", "y", "z", "nx", "ny", "nz", "name"}));
+  EXPECT_EQ(rows[0],
+            (Names{"ray", "hit", "t", "surface", "patch", "u", "v", "x", "y", "z", "nx", "ny", "nz", "seam", "name"}));
   const Result<Model> model = read_model(teapot);
   ASSERT_TRUE(model.ok());
   std::size_t hits = 0;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const std::vector<std::string>& row = rows[k + 1];
-    ASSERT_EQ(row.size(), 14u);
+    ASSERT_EQ(row.size(), 15u);
     EXPECT_EQ(row[0], std::to_string(k));
     if (row[1] != "1") {
       EXPECT_EQ(row[1], "0");
-      for (std::size_t c = 2; c < 14; ++c) EXPECT_EQ(row[c], "");
+      for (std::size_t c = 2; c < 15; ++c) EXPECT_EQ(row[c], "");
       continue;
     }
     ++hits;

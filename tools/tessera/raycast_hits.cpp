@@ -56,6 +56,7 @@ Status write_ray_hits(const Job& job, const RaycastOptions& options, const Commo
   object["unrefined"] = counts.unrefined;
   object["uncertified"] = counts.uncertified;
   object["incomplete"] = counts.incomplete;
+  object["seam"] = counts.seam;
   add_model_facts(object, scene.loaded, scene.set);
   add_seconds(object, common, timings);
   return print_report(job.output, object.text() + "\n");

@@ -53,7 +53,8 @@ struct HitFlags {
   bool degenerate_normal : 1 = false;  ///< the normal is a limit at a degenerate point, or undefined (zero)
   /// Exact mode: the point lies on the ray within the tolerance, but it was not proven to be the only root of the
   /// surface near there. The ray touches the surface or runs along it (t is then good to about the square root of
-  /// tolerance times size), meets a pole, or passes a border by less than the tolerance.
+  /// tolerance times size), meets a pole, or passes a border by less than the tolerance. Where it touches the border of
+  /// patches that fold over each other there, as at a convex edge, RayScene::all() has two hits, one of them so flagged.
   bool uncertified : 1 = false;
   /// Exact mode: the bound on the work for one piece of a patch was reached, as where a surface runs along the ray or
   /// is folded up into a line. There may be other hits, also for a miss.

@@ -18,7 +18,6 @@
 #include "ray/leaf/leaf_search.h"
 #include "ray/line/line_aside.h"
 #include "ray/line/ray_lines.h"
-#include "ray/line/ray_segment.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/coherent_lines.h"
@@ -27,6 +26,7 @@
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
 #include "ray/seam/distinct_roots.h"
+#include "ray/seam/fold_roots.h"
 #include "ray/seam/lazy_adjacency.h"
 #include "ray/seam/nearest_root.h"
 
@@ -343,6 +343,7 @@ void ExactScene::trace(std::span<RayQuery* const> queries) const {
 /// Appends the hits of a query, which is the given one or for its line moved sideways.
 void ExactScene::append_hits(RayQuery& query, const RayQuery& given, std::vector<Hit>& hits) const {
   keep_distinct(set(), adjacency_.of(set()), query.roots);
+  complete_folds(set(), adjacency_.of(set()), frame_, query.line, trims_, query.roots);
   for (const LeafRoot& root : query.roots) {
     if (root.patch >= own_patches()) continue;
     Hit& hit = hits.emplace_back(hit_at(query.line, root));
@@ -362,8 +363,7 @@ void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
       const FlushDenormals flush;
       trace(other);
     }
-    query.steps += other.steps;
-    query.overflow |= other.overflow;
+    query.steps += other.steps, query.overflow |= other.overflow;
     if (query.overflow) return;
     if (other.seam_gap > 0) continue;
     query.incomplete = other.incomplete;
