@@ -4,9 +4,11 @@
 A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project
 is built against the package installed in PREFIX; a block of Rust is a program of its own, tried where rustc is. An
 ```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and its exit status 0; with ```failure instead of
-```output the status must be 1. --print shows what it prints instead.
+```output the status must be 1. Arguments that begin with tools/ are files of the sources. --print shows what it prints
+instead.
 """
 
+import os
 import pathlib
 import re
 import shutil
@@ -14,6 +16,7 @@ import subprocess
 import sys
 
 
+SOURCES = pathlib.Path(__file__).resolve().parents[2]
 STATUS = {'output': 0, 'failure': 1}
 
 
@@ -56,9 +59,15 @@ def main():
         subprocess.run(['rustc', '-O', folder / name, '-o', folder / 'build' / program, '-L', f'native={library}', '-l',
                         'tessera_c', '-C', f'link-arg=-Wl,-rpath,{library}'], check=True)
     wrong = 0
+    reader = pathlib.Path(prefix).resolve() / 'libexec/tessera/tessera-cad-reader'
     for command, (status, expected) in outputs.items():
+        if command.endswith('.step') and not reader.exists():
+            print(f'{guide}: {command} is not tried, {reader.name} was not built')
+            continue
         program, *arguments = command.split()
-        ran = subprocess.run([folder / 'build' / program, *arguments], stdout=subprocess.PIPE, text=True, cwd=folder)
+        arguments = [SOURCES / word if word.startswith('tools/') else word for word in arguments]
+        ran = subprocess.run([folder / 'build' / program, *arguments], stdout=subprocess.PIPE, text=True, cwd=folder,
+                             env=os.environ | {'TESSERA_CAD_READER': str(reader)})
         if '--print' in sys.argv:
             print(ran.stdout, end='')
         elif (ran.returncode, ran.stdout) != (status, expected):
