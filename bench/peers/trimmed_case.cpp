@@ -36,11 +36,17 @@ TopoDS_Shape expanded(const TopoDS_Shape& shape) {
   return all;
 }
 
+template <class T>
+T value_or_throw(Result<T> result) {
+  if (!result) throw std::runtime_error(result.status().message());
+  return *std::move(result);
+}
+
 CadFile load(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](char c) { return static_cast<char>(std::tolower(c)); });
   const bool step = ending == ".stp" || ending == ".step", iges = ending == ".igs" || ending == ".iges";
-  return test::value_of(step ? load_step(file.string()) : iges ? load_iges(file.string()) : load_brep(file.string()));
+  return value_or_throw(step ? load_step(file.string()) : iges ? load_iges(file.string()) : load_brep(file.string()));
 }
 
 void check_same(const ModelSurface& surface, const TrueFace& face) {
@@ -74,7 +80,7 @@ TrimmedCase read_case(const std::filesystem::path& file) {
   one.distinct_faces = distinct.size();
   if (distinct.size() < faces.size()) cad.shape = expanded(cad.shape);
   one.shape = cad.shape;
-  one.model = test::value_of(model_of(cad, one.name));
+  one.model = value_or_throw(model_of(cad, one.name));
   faces.clear();
   collect(one.shape, TopAbs_FACE, faces);
   for (const TopoDS_Shape& shape : faces) {

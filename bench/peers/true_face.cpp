@@ -81,6 +81,13 @@ void TrueFace::measure_gaps() {
 
 Vec3 TrueFace::point(const Parameters& at) const { return vec3_of(surface_.Value(at[0], at[1])); }
 
+Vec3 TrueFace::normal(const Parameters& at) const {
+  gp_Pnt position;
+  gp_Vec along_u, along_v;
+  surface_.D1(at[0], at[1], position, along_u, along_v);
+  return normalized(cross(vec3_of(along_u), vec3_of(along_v)));
+}
+
 Parameters TrueFace::theirs(const Parameters& ours) const {
   const double u = reversed_ ? ours[1] : ours[0], v = reversed_ ? ours[0] : ours[1];
   return {map_.u ? map_.u->angle(u) : u, map_.v ? map_.v->angle(v) : v};

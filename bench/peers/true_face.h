@@ -33,12 +33,15 @@ class TrueFace {
   double edge_gap() const { return edge_gap_; }    ///< between edges in space and those in the parameters
 
   Vec3 point(const Parameters& at) const;
+  Vec3 normal(const Parameters& at) const;  ///< a unit vector, or zero at a degenerate point
   Parameters theirs(const Parameters& ours) const;
   Parameters ours(const Parameters& theirs) const;
   bool contains(const Parameters& at) const;  ///< on the border too
 
   /// An upper bound of the distance of the face's kept part, which is sharp if `start` lies near the foot.
   double distance(const Vec3& p, const Parameters& start) const;
+  /// The distance of a point from the border, by the curves in the parameters.
+  double distance_from_border(const Vec3& p) const;
   /// The distance of a parameter from the border, as a share of the box's width and height.
   double border_share(const Parameters& at) const;
   /// A random parameter in the box.
@@ -54,7 +57,6 @@ class TrueFace {
     std::vector<Parameters> parameters;  ///< of the points
   };
   Vec3 point_of(const Edge& edge, double t) const;
-  double distance_from_border(const Vec3& p) const;
   void measure_gaps();
 
   TopoDS_Face face_;
