@@ -109,7 +109,7 @@ class TheirRays {
 /// The figures of a file.
 struct Row {
   std::size_t rays = 0, ours = 0, theirs = 0, same = 0;
-  std::size_t our_odd = 0, their_odd = 0;  ///< odd counts of rays at closed solids, without edges and tangents
+  std::size_t our_odd = 0, their_odd = 0;  ///< rays that cross closed solids an odd number of times
   double apart = 0;
   std::array<std::size_t, ray_causes> causes{};
   double their_seconds = 0, all_seconds = 0, closest_seconds = 0;  ///< of all rays
@@ -119,17 +119,21 @@ void print(const TrimmedCase& one, const Ray& ray, const RayDifference& differen
   const auto& [hit, is_ours, cause] = difference;
   const TrueFace& face = *one.faces[hit.face];
   std::printf(
-      "  %s lacks a hit: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g), t %.12g, face %zu, (%.12g, %.12g), slope %.2e, "
+      "  %s lacks a hit: ray (%.17g %.17g %.17g) + t (%.17g %.17g %.17g), t %.12g, face %zu, (%.12g, %.12g), slope "
+      "%.2e, "
       "%.2e from the border, %s\n",
       is_ours ? "OpenCASCADE" : "Tessera", ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
-      ray.direction.z, hit.t, hit.face, hit.at[0], hit.at[1], hit.slope,
-      face.distance_from_border(face.point(hit.at)), face.contains(hit.at) ? "inside" : "outside");
+      ray.direction.z, hit.t, hit.face, hit.at[0], hit.at[1], hit.slope, face.distance_from_border(face.point(hit.at)),
+      face.contains(hit.at) ? "inside" : "outside");
 }
 
 class Comparison {
  public:
   Comparison(const std::filesystem::path& file)
-      : case_(read_case(file)), set_(value_of(make_patch_set(case_.model))), scene_(value_of(RayScene::make(set_))) {}
+      : case_(read_case(file)),
+        set_(value_of(make_patch_set(case_.model))),
+        scene_(value_of(RayScene::make(set_))),
+        faces_(value_of(RayScene::make(set_, {.seams = false}))) {}
 
   Row run(std::size_t count) {
     std::vector<Ray> rays = rays_at(scene_.box(), count);
@@ -161,35 +165,42 @@ class Comparison {
     row.all_seconds = best[0], row.closest_seconds = best[1];
   }
 
+  /// The hits of a ray. Those of a ray that passes an edge are of the ray moved aside, so they are replaced by those of
+  /// the ray where it is.
+  std::vector<FaceHit> hits(const Ray& ray, std::span<const Hit> found) const {
+    HitLists unmoved;
+    if (std::ranges::any_of(found, [](const Hit& hit) { return hit.flags.seam; })) {
+      if (!faces_.all(std::span(&ray, 1), unmoved).ok()) throw std::runtime_error("a ray failed");
+      found = unmoved.hits;
+    }
+    std::vector<FaceHit> hits;
+    for (const Hit& hit : found)
+      hits.push_back({hit.surface, hit.t, case_.faces[hit.surface]->theirs({hit.u, hit.v}),
+                      std::abs(dot(hit.normal, ray.direction))});
+    return hits;
+  }
+
   void compare(const std::vector<Ray>& rays, const HitLists& lists, const std::vector<std::vector<FaceHit>>& theirs,
                Row& row) const {
-    double gap = 0;
-    for (const double of : value_of(scene_.edge_gaps())) gap = std::max(gap, of);
-    const RayReferee referee(case_, gap, tolerance);
+    const RayReferee referee(case_, tolerance);
     const bool closed = std::ranges::all_of(case_.model.shapes, test::is_closed);
     for (std::size_t k = 0; k < rays.size(); ++k) {
-      std::vector<FaceHit> ours;
-      for (std::size_t h = lists.first[k]; h < lists.first[k + 1]; ++h) {
-        const Hit& hit = lists.hits[h];
-        ours.push_back({hit.surface, hit.t, case_.faces[hit.surface]->theirs({hit.u, hit.v}),
-                        std::abs(dot(hit.normal, rays[k].direction)), hit.flags.seam});
-      }
+      const std::span<const Hit> found(lists.hits.data() + lists.first[k], lists.first[k + 1] - lists.first[k]);
+      const std::vector<FaceHit> ours = hits(rays[k], found);
       const RayOutcome outcome = referee.compare(rays[k], ours, theirs[k]);
       row.ours += ours.size(), row.theirs += theirs[k].size(), row.same += outcome.same;
       row.apart = std::max(row.apart, outcome.apart);
-      bool is_clean = true;
       for (const RayDifference& difference : outcome.differences) {
         ++row.causes[static_cast<std::size_t>(difference.cause)];
-        is_clean = is_clean && difference.cause > RayCause::tangent;
         if (difference.cause == RayCause::unexplained) print(case_, rays[k], difference);
       }
-      if (closed && is_clean) row.our_odd += ours.size() % 2, row.their_odd += theirs[k].size() % 2;
+      if (closed) row.our_odd += found.size() % 2, row.their_odd += theirs[k].size() % 2;
     }
   }
 
   TrimmedCase case_;
   PatchSet set_;
-  RayScene scene_;
+  RayScene scene_, faces_;
 };
 
 /// Returns whether all differences are explained.
@@ -198,8 +209,8 @@ bool report(const std::filesystem::path& file, std::size_t rays) {
   Comparison comparison(file);
   const Row row = comparison.run(rays);
   const double each = 1e6 / static_cast<double>(row.rays);
-  std::printf("%-40.40s %5zu %5zu %6zu %6zu %7.1e | ", file.filename().c_str(), comparison.model().faces.size(), row.rays,
-              row.ours, row.theirs, row.apart);
+  std::printf("%-40.40s %5zu %5zu %6zu %6zu %7.1e | ", file.filename().c_str(), comparison.model().faces.size(),
+              row.rays, row.ours, row.theirs, row.apart);
   for (const std::size_t count : row.causes) std::printf("%4zu ", count);
   std::printf("| %3zu %3zu | %8.1f %6.2f %6.2f | %7.1f %7.1f\n", row.our_odd, row.their_odd, row.their_seconds * each,
               row.all_seconds * each, row.closest_seconds * each, row.their_seconds / row.all_seconds,
@@ -218,7 +229,8 @@ int run(Options options) {
     try {
       good = report(file, options.rays) && good;
     } catch (const Standard_Failure& failure) {
-      std::printf("%s: OpenCASCADE: %s\n", file.filename().c_str(), failure.GetMessageString());
+      std::printf("%s: OpenCASCADE: %s %s\n", file.filename().c_str(), failure.DynamicType()->Name(),
+                  failure.GetMessageString());
     } catch (const std::runtime_error& error) {
       std::printf("no rays: %s\n", error.what());
     }

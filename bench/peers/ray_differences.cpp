@@ -19,8 +19,7 @@ double distance_from(const Ray& ray, const Vec3& p) {
 
 }  // namespace
 
-RayReferee::RayReferee(const TrimmedCase& one, double gap, double tolerance)
-    : case_(one), gap_(gap), tolerance_(tolerance) {
+RayReferee::RayReferee(const TrimmedCase& one, double tolerance) : case_(one), tolerance_(tolerance) {
   for (const auto& face : one.faces) {
     double largest = 0;
     for (TopExp_Explorer walk(face->face(), TopAbs_EDGE); walk.More(); walk.Next())
@@ -29,8 +28,8 @@ RayReferee::RayReferee(const TrimmedCase& one, double gap, double tolerance)
   }
 }
 
-double RayReferee::reach(const FaceHit& hit, bool is_seam) const {
-  return (10 * tolerance_ + (is_seam ? 4 * gap_ : 0)) / std::max(hit.slope, grazing);
+double RayReferee::reach(const FaceHit& hit) const {
+  return (10 * tolerance_ + case_.fit_errors[hit.face]) / std::max(hit.slope, grazing);
 }
 
 bool RayReferee::is_near_edge(const FaceHit& hit) const {
@@ -41,7 +40,7 @@ bool RayReferee::is_near_edge(const FaceHit& hit) const {
 
 bool RayReferee::confirms(const Ray& ray, const FaceHit& hit) const {
   const TrueFace& face = *case_.faces[hit.face];
-  if (distance_from(ray, face.point(hit.at)) > 10 * tolerance_) return false;
+  if (distance_from(ray, face.point(hit.at)) > 10 * tolerance_ + case_.fit_errors[hit.face]) return false;
   const gp_Pnt2d at(hit.at[0], hit.at[1]);
   return face.contains(hit.at) && BRepClass_FaceClassifier(face.face(), at, 1e-12).State() != TopAbs_OUT;
 }
@@ -51,25 +50,23 @@ RayCause RayReferee::cause(const Ray& ray, const FaceHit& hit, bool is_ours, std
   if (hit.slope < grazing) return RayCause::tangent;
   const bool is_kept = confirms(ray, hit);
   if (is_ours) return is_kept ? RayCause::missed : RayCause::unexplained;
-  const auto count = std::ranges::count_if(theirs, [&](const FaceHit& other) {
-    return other.face == hit.face && std::abs(other.t - hit.t) <= reach(hit, false);
-  });
+  const auto count = std::ranges::count_if(
+      theirs, [&](const FaceHit& other) { return other.face == hit.face && std::abs(other.t - hit.t) <= reach(hit); });
   if (count > 1) return RayCause::twice;
   return is_kept ? RayCause::unexplained : RayCause::refuted;
 }
 
 RayOutcome RayReferee::compare(const Ray& ray, std::span<const FaceHit> ours, std::span<const FaceHit> theirs) const {
   RayOutcome outcome;
-  const bool is_seam = std::ranges::any_of(ours, &FaceHit::is_seam);
   std::vector<bool> taken(theirs.size());
   for (const FaceHit& hit : ours) {
     std::size_t best = theirs.size();
-    double least = reach(hit, is_seam);
+    double least = reach(hit);
     for (std::size_t k = 0; k < theirs.size(); ++k)
       if (!taken[k] && theirs[k].face == hit.face && std::abs(theirs[k].t - hit.t) <= least)
         best = k, least = std::abs(theirs[k].t - hit.t);
     if (best == theirs.size()) {
-      outcome.differences.push_back({hit, true, is_seam ? RayCause::edge : cause(ray, hit, true, theirs)});
+      outcome.differences.push_back({hit, true, cause(ray, hit, true, theirs)});
       continue;
     }
     taken[best] = true;
@@ -77,9 +74,7 @@ RayOutcome RayReferee::compare(const Ray& ray, std::span<const FaceHit> ours, st
     outcome.apart = std::max(outcome.apart, least);
   }
   for (std::size_t k = 0; k < theirs.size(); ++k)
-    if (!taken[k])
-      outcome.differences.push_back(
-          {theirs[k], false, is_seam ? RayCause::edge : cause(ray, theirs[k], false, theirs)});
+    if (!taken[k]) outcome.differences.push_back({theirs[k], false, cause(ray, theirs[k], false, theirs)});
   return outcome;
 }
 

@@ -18,12 +18,11 @@ struct FaceHit {
   double t = 0;          ///< a length, as directions are unit vectors
   Parameters at{};       ///< OpenCASCADE's
   double slope = 1;      ///< |normal . direction|
-  bool is_seam = false;  ///< the ray passes an edge within its gap (HitFlags::seam)
 };
 
 /// The reason why only one of the programs has a hit. The first that applies counts.
 enum class RayCause : std::uint8_t {
-  edge,         ///< an edge of the face is nearer than its tolerance, or the ray passes one within its gap
+  edge,         ///< an edge of the face is nearer than its tolerance
   tangent,      ///< the ray grazes the surface
   twice,        ///< OpenCASCADE has the hit twice
   missed,       ///< OpenCASCADE lacks a hit that its own surface and its own classifier confirm
@@ -49,19 +48,19 @@ struct RayOutcome {
 /// Pairs and explains the hits of rays at one model.
 class RayReferee {
  public:
-  /// `gap` is how far rays that pass an edge are moved aside, and `tolerance` that of OpenCASCADE's intersector.
-  RayReferee(const TrimmedCase& one, double gap, double tolerance);
+  /// `tolerance` is that of OpenCASCADE's intersector.
+  RayReferee(const TrimmedCase& one, double tolerance);
   /// The hits of both, each in the order of t.
   RayOutcome compare(const Ray& ray, std::span<const FaceHit> ours, std::span<const FaceHit> theirs) const;
 
  private:
-  double reach(const FaceHit& hit, bool is_seam) const;
+  double reach(const FaceHit& hit) const;
   bool is_near_edge(const FaceHit& hit) const;
   bool confirms(const Ray& ray, const FaceHit& hit) const;
   RayCause cause(const Ray& ray, const FaceHit& hit, bool is_ours, std::span<const FaceHit> theirs) const;
 
   const TrimmedCase& case_;
-  double gap_, tolerance_;
+  double tolerance_;
   std::vector<double> edge_tolerance_;  ///< for each face, the largest of its edges
 };
 

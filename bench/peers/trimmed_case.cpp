@@ -91,7 +91,9 @@ TrimmedCase read_case(const std::filesystem::path& file) {
     const Result<FaceBox> box = face_box(face);
     if (!box) continue;
     const Result<FaceSurface> made = face_surface(surface, box->domain);
-    if (made) one.faces.push_back(std::make_unique<TrueFace>(face, *box, made->parameters));
+    if (!made) continue;
+    one.faces.push_back(std::make_unique<TrueFace>(face, *box, made->parameters));
+    one.fit_errors.push_back(made->fit_error);
   }
   if (one.faces.size() != one.model.surfaces.size()) throw std::runtime_error("faces were left out");
   for (std::size_t k = 0; k < one.faces.size(); ++k) check_same(one.model.surfaces[k], *one.faces[k]);

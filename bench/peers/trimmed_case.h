@@ -19,6 +19,7 @@ struct TrimmedCase {
   std::size_t distinct_faces = 0;                ///< of as_read
   Model model;                                   ///< surface k is faces[k]
   std::vector<std::unique_ptr<TrueFace>> faces;  ///< in `shape`
+  std::vector<double> fit_errors;                ///< how far each surface of the model lies from that of its face
   std::size_t trimmed_faces() const;
 };
 
