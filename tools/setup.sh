@@ -4,13 +4,14 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|cad|test|neon|peers|gallery|docs]
+tools/setup.sh [--for demo|cad|python|test|neon|peers|gallery|docs]
 
 Lists and installs the missing Debian packages that Tessera is built with, by apt-get, with sudo unless it runs as root.
 If nothing is missing, it does nothing and needs neither network nor rights.
 
   --for demo      the libraries and the command line
   --for cad       the demo, and OpenCASCADE for CAD files
+  --for python    the demo, OpenCASCADE, and what builds the package for Python
   --for test      the demo, OpenCASCADE, and the tests (the default)
   --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
                   test is skipped
@@ -36,12 +37,13 @@ peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct
   libsisl-dev povray python3)
 gallery_packages=(imagemagick fonts-dejavu-core)
 docs_packages=(doxygen python3)
+python_packages=("${cad_packages[@]}" patchelf python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)
 
 purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, cad, test, neon, peers, gallery or docs"
+      (($# >= 2)) || fail "--for wants a word after it: demo, cad, python, test, neon, peers, gallery or docs"
       purpose=$2
       shift 2
       ;;
@@ -59,12 +61,13 @@ done
 case $purpose in
   demo) packages=("${demo_packages[@]}") ;;
   cad) packages=("${demo_packages[@]}" "${cad_packages[@]}") ;;
+  python) packages=("${demo_packages[@]}" "${python_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
   neon) packages=("${demo_packages[@]}" "${test_packages[@]}" "${neon_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
   gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
   docs) packages=("${demo_packages[@]}" "${docs_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, cad, test, neon, peers, gallery and docs" ;;
+  *) fail "--for $purpose: no such purpose; there are demo, cad, python, test, neon, peers, gallery and docs" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import os
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -254,6 +253,8 @@ def _make(handle: ctypes.c_void_p, source: tuple[Any, ...]) -> None:
     if kind == "read":
         run(library.tsr_model_read, to, os.fsencode(rest[0]), makes=handle)
     elif kind == "bytes":
+        import tempfile  # as long to import as half of this package
+
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, os.path.basename(rest[0]))
             with open(path, "wb") as file:

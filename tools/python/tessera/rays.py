@@ -123,8 +123,10 @@ class _Rays:
         scalars = {name: array_of(name, value, dtype) for name, value in scalars.items() if value is not None}
         shapes = {name: array.shape[:-1] for name, array in vectors.items()}
         shapes.update((name, array.shape) for name, array in scalars.items())
+        self.shape: tuple[int, ...] = shapes["direction"]
         try:
-            self.shape: tuple[int, ...] = np.broadcast_shapes(*shapes.values())
+            if any(shape != self.shape for shape in shapes.values()):
+                self.shape = np.broadcast_shapes(*shapes.values())
         except ValueError:
             found = ", ".join(f"{name} of {shape}" for name, shape in shapes.items())
             raise ArgumentError(f"the rays do not fit each other: {found}") from None
@@ -137,8 +139,9 @@ class _Rays:
 
     def _put(self, name: str, array: np.ndarray, components: int) -> None:
         # One record holds for all rays, of directions alone it does not.
-        if name == "direction" or array.size != components:
-            array = np.broadcast_to(array, self.shape if components == 1 else (*self.shape, components))
+        shape = self.shape if components == 1 else (*self.shape, components)
+        if array.shape != shape and (name == "direction" or array.size != components):
+            array = np.broadcast_to(array, shape)
         flat = records_of(array, components)
         self._kept.append(flat)
         setattr(self.struct, name, in_view(flat))

@@ -1,0 +1,116 @@
+"""Builds the wheel: the C library, the reader of CAD files, and the libraries that they need.
+
+TESSERA_PYTHON_BUILD names the folder of the build [build/python]; TESSERA_PYTHON_PREBUILT one that is built already.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+from setuptools import Distribution, setup
+from setuptools.command.build_py import build_py
+from wheel.bdist_wheel import bdist_wheel
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCES = HERE.parents[1]
+PREBUILT = os.environ.get("TESSERA_PYTHON_PREBUILT")
+BUILD = pathlib.Path(PREBUILT or os.environ.get("TESSERA_PYTHON_BUILD", SOURCES / "build" / "python"))
+# Every machine has these; a second C++ library in one process does harm.
+OF_THE_SYSTEM = re.compile(r"ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s|z)\.so")
+
+
+def version():
+    text = (SOURCES / "engine/include/tessera/version.h").read_text()
+    return re.search(r'#define TESSERA_VERSION "([^"]+)"', text)[1]
+
+
+def built():
+    """Builds the library and, where OpenCASCADE is found, the reader of CAD files. Returns their files."""
+    files = [BUILD / "engine" / "libtessera_c.so", BUILD / "tools" / "tessera-cad-reader"]
+    if not PREBUILT:
+        build()
+    return [file for file in files if file.exists()]
+
+
+def build():
+    options = {"CMAKE_BUILD_TYPE": "Release", "TESSERA_BUILD_CAD_READER": "AUTO"}
+    options.update((f"TESSERA_BUILD_{part}", "OFF") for part in ("TESTS", "BENCH", "TOOLS"))
+    configure = ["cmake", "-S", str(SOURCES), "-B", str(BUILD)]
+    configure += [f"-D{name}={value}" for name, value in options.items()]
+    if shutil.which("ninja") and not (BUILD / "CMakeCache.txt").exists():
+        configure += ["-G", "Ninja"]
+    subprocess.run(configure, check=True)
+    jobs = str(os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", os.cpu_count()))
+    for target in ("tessera_c_library", "tessera_cad_reader"):
+        if target == "tessera_c_library" or has_target(target):
+            subprocess.run(["cmake", "--build", str(BUILD), "--parallel", jobs, "--target", target], check=True)
+
+
+def has_target(name):
+    helped = subprocess.run(["cmake", "--build", str(BUILD), "--target", "help"], stdout=subprocess.PIPE, text=True)
+    return re.search(rf"\b{name}\b", helped.stdout) is not None
+
+
+def needed_by(file):
+    """Returns the libraries that a file is linked with, by name, without those of every system."""
+    found = subprocess.run(["ldd", str(file)], check=True, stdout=subprocess.PIPE, text=True).stdout
+    libraries = dict(re.findall(r"^\s*(\S+) => (/\S+)", found, re.M))
+    return {name: path for name, path in libraries.items() if not OF_THE_SYSTEM.match(name)}
+
+
+def bundle(folder):
+    """Fills tessera/lib. Its libraries have names of their own, so that they and others of a process stay apart."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    files = [pathlib.Path(shutil.copy(file, folder)) for file in built()]
+    libraries = {name: path for file in files for name, path in needed_by(file).items()}
+    names = {name: name.replace(".so", "-tessera.so", 1) for name in libraries}
+    files += [pathlib.Path(shutil.copy(path, folder / names[name])) for name, path in libraries.items()]
+    for file in files:
+        file.chmod(0o755)
+        subprocess.run(["strip", "--strip-unneeded", str(file)], check=True)
+        print_needed = ["patchelf", "--print-needed", str(file)]
+        needed = subprocess.run(print_needed, check=True, stdout=subprocess.PIPE, text=True).stdout.split()
+        # patchelf 0.14 mixes up the names of several kinds of changes in one call.
+        changes = [part for name in needed if name in names for part in ("--replace-needed", name, names[name])]
+        soname = ["--set-soname", file.name] if file.name in names.values() else []
+        for change in filter(None, (changes, soname, ["--set-rpath", "$ORIGIN"])):
+            subprocess.run(["patchelf", *change, str(file)], check=True)
+
+
+class BuildWithLibrary(build_py):
+    def run(self):
+        super().run()
+        for tool in ("cmake", "patchelf", "strip"):
+            if shutil.which(tool) is None:
+                raise SystemExit(f"found no program {tool}: run tools/setup.sh --for python")
+        bundle(pathlib.Path(self.build_lib) / "tessera" / "lib")
+
+
+class WheelOfAnyPython(bdist_wheel):
+    def get_tag(self):
+        return "py3", "none", super().get_tag()[2]
+
+
+class DistributionOfOnePlatform(Distribution):
+    def has_ext_modules(self):
+        return True
+
+
+# Nothing is written among the sources.
+WRITTEN = BUILD / "wheel"
+WRITTEN.mkdir(parents=True, exist_ok=True)
+setup(
+    name="tessera",
+    version=version(),
+    description="Parametric surfaces to points, meshes and ray hits",
+    python_requires=">=3.9",
+    install_requires=["numpy>=1.22"],
+    packages=["tessera"],
+    package_data={"tessera": ["py.typed", "view.html"]},
+    options={"build": {"build_base": str(WRITTEN)}, "egg_info": {"egg_base": str(WRITTEN)}},
+    distclass=DistributionOfOnePlatform,
+    cmdclass={"build_py": BuildWithLibrary, "bdist_wheel": WheelOfAnyPython},
+)
