@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
 import numpy as np
 
 from ._library import In, Out
 from .errors import ArgumentError, ArgumentTypeError
+
+_NoBytes = ctypes.c_char * 0
 
 
 def array_of(name: str, value: Any, dtype: Any = np.float64) -> np.ndarray:
@@ -44,9 +47,7 @@ def records_of(array: np.ndarray, components: int) -> np.ndarray:
 
 
 def _view(kind: Any, flat: np.ndarray) -> Any:
-    strides = flat.strides
-    component = strides[1] if len(strides) > 1 else 0
-    return kind(flat.__array_interface__["data"][0], len(flat), strides[0], component)
+    return kind(flat.__array_interface__["data"][0], len(flat), *flat.strides)
 
 
 def in_view(flat: np.ndarray) -> Any:
@@ -54,9 +55,12 @@ def in_view(flat: np.ndarray) -> Any:
     return _view(In, flat)
 
 
-def out_view(name: str, array: np.ndarray, dtype: Any, shape: tuple[int, ...], components: int) -> Any:
+def out_view(name: str, array: np.ndarray, dtype: np.dtype, shape: tuple[int, ...], components: int) -> Any:
     """Returns the tsr_out of an array that is checked: its type, its shape, and whether it can be written in place."""
     check_output(name, array, dtype, shape if components == 1 else (*shape, components))
+    if array.flags.c_contiguous:
+        # Without strides the records are packed. The address comes from the buffer, since __array_interface__ takes 0.6 us.
+        return Out(ctypes.addressof(_NoBytes.from_buffer(array)), array.size // components)
     flat = array.view()
     try:
         flat.shape = (-1,) if components == 1 else (-1, components)
@@ -67,17 +71,18 @@ def out_view(name: str, array: np.ndarray, dtype: Any, shape: tuple[int, ...], c
     return _view(Out, flat)
 
 
-def check_output(name: str, array: Any, dtype: Any, shape: tuple[int, ...]) -> None:
+def check_output(name: str, array: Any, dtype: np.dtype, shape: tuple[int, ...]) -> None:
     """Raises an error unless the array can be written with values of this type and shape."""
     if not isinstance(array, np.ndarray):
         raise ArgumentTypeError(f"{name}: expected an array of NumPy, found {type(array).__name__}")
-    if array.dtype != np.dtype(dtype):
+    if array.dtype != dtype:
         raise ArgumentTypeError(f"{name}: expected dtype {np.dtype(dtype)}, found {array.dtype}")
     if array.shape != shape:
         raise ArgumentError(f"{name}: expected shape {shape}, found {array.shape}")
-    if not array.flags.writeable:
+    flags = array.flags
+    if not flags.writeable:
         raise ArgumentError(f"{name}: the array is read-only")
-    if not array.flags.aligned:
+    if not flags.aligned:
         raise ArgumentError(f"{name}: the array is not aligned")
 
 

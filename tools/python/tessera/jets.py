@@ -68,7 +68,7 @@ class Jets:
     second_direction: np.ndarray | None = None
 
     def __init__(self, **arrays: np.ndarray) -> None:
-        unknown = set(arrays) - set(QUANTITIES)
+        unknown = arrays.keys() - QUANTITIES.keys()
         if unknown:
             raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
         self.__dict__.update(arrays)
@@ -103,7 +103,8 @@ def _new_jets(shape: tuple[int, ...], dtype: Any, derivatives: int, quantities: 
 
 def _jets_out(jets: Jets, shape: tuple[int, ...], dtype: Any) -> Any:
     out = struct("tsr_jets")
-    out.is_double = np.dtype(dtype) == np.float64
+    dtype = np.dtype(dtype)
+    out.is_double = dtype == np.float64
     for name, array in jets.__dict__.items():
         setattr(out, name, out_view(name, array, dtype, shape, QUANTITIES[name]))
     return out

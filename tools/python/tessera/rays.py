@@ -16,20 +16,21 @@ from .errors import ArgumentError
 if TYPE_CHECKING:
     from .patches import PatchSet
 
+_BYTE, _INDEX, _DOUBLE = np.dtype(np.uint8), np.dtype(np.uint32), np.dtype(np.float64)
 #: The quantities of a hit: components and type.
-QUANTITIES: dict[str, tuple[int, Any]] = {
-    "kind": (1, np.uint8),
-    "flags": (1, np.uint8),
-    "surface": (1, np.uint32),
-    "patch": (1, np.uint32),
-    "t": (1, np.float64),
-    "uv": (2, np.float64),
-    "patch_uv": (2, np.float64),
-    "position": (3, np.float64),
-    "normal": (3, np.float64),
-    "du": (3, np.float64),
-    "dv": (3, np.float64),
-    "residual": (1, np.float64),
+QUANTITIES: dict[str, tuple[int, np.dtype]] = {
+    "kind": (1, _BYTE),
+    "flags": (1, _BYTE),
+    "surface": (1, _INDEX),
+    "patch": (1, _INDEX),
+    "t": (1, _DOUBLE),
+    "uv": (2, _DOUBLE),
+    "patch_uv": (2, _DOUBLE),
+    "position": (3, _DOUBLE),
+    "normal": (3, _DOUBLE),
+    "du": (3, _DOUBLE),
+    "dv": (3, _DOUBLE),
+    "residual": (1, _DOUBLE),
 }
 _USUAL = ("kind", "flags", "surface", "patch", "t", "uv", "position", "normal", "residual")
 _UNCERTIFIED = 4
@@ -60,7 +61,7 @@ class Hits:
     residual: np.ndarray | None = None
 
     def __init__(self, **arrays: np.ndarray) -> None:
-        unknown = set(arrays) - set(QUANTITIES)
+        unknown = arrays.keys() - QUANTITIES.keys()
         if unknown:
             raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
         self.__dict__.update(arrays)
@@ -211,8 +212,8 @@ class Scene(Handle):
     ) -> np.ndarray:
         """Returns whether anything lies on each ray."""
         rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
-        found = np.empty(rays.shape, np.uint8)
-        self._run(library.tsr_scene_occluded, rays, out_view("occluded", found, np.uint8, rays.shape, 1))
+        found = np.empty(rays.shape, _BYTE)
+        self._run(library.tsr_scene_occluded, rays, out_view("occluded", found, _BYTE, rays.shape, 1))
         return found.view(bool)
 
     def all(
