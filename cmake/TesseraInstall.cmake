@@ -16,6 +16,24 @@ function(tessera_install_component name target)
   install(EXPORT tessera_${name} FILE tessera_${name}_targets.cmake NAMESPACE tessera:: DESTINATION ${package_dir})
 endfunction()
 
+# tessera_install_python(): the package for Debian's Python, which looks in lib/pythonX.Y of /usr/local and in lib/python3
+# of /usr. It finds the C library beside it. Without Debian's Python nothing is installed.
+function(tessera_install_python)
+  if(NOT DEFINED TESSERA_PYTHON_DIR AND EXISTS /usr/bin/python3)
+    execute_process(COMMAND /usr/bin/python3 -c "import sys; print('%d.%d' % sys.version_info[:2])"
+      OUTPUT_VARIABLE python OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+      set(python 3)
+    endif()
+    set(TESSERA_PYTHON_DIR lib/python${python}/dist-packages CACHE STRING
+      "Where the package for Python is installed; empty: not at all")
+  endif()
+  if(TESSERA_PYTHON_DIR)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/tessera DESTINATION ${TESSERA_PYTHON_DIR}
+      FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "__pycache__" EXCLUDE)
+  endif()
+endfunction()
+
 # The headers of a component that is not built stay out.
 set(left_out)
 tessera_install_component(core tessera)
@@ -41,6 +59,7 @@ endif()
 if(TESSERA_BUILD_C)
   tessera_install_component(c tessera_c_library)
   tessera_install_pkg_config(tessera-c tessera_c_library "Tessera for C and for languages that call C")
+  tessera_install_python()
 else()
   list(APPEND left_out PATTERN "tessera_c.h" EXCLUDE)
 endif()

@@ -12,7 +12,7 @@ If nothing is missing, it does nothing and needs neither network nor rights.
   --for demo      the libraries and the command line
   --for cad       the demo, and OpenCASCADE for CAD files
   --for python    the demo, OpenCASCADE, and what builds the package for Python
-  --for test      the demo, OpenCASCADE, and the tests (the default)
+  --for test      these, and the tests (the default)
   --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
                   test is skipped
   --for peers     the demo, and the programs that Tessera is compared with
@@ -30,14 +30,14 @@ fail() {
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
   libtinygltf-dev zlib1g-dev libpng-dev libopenexr-dev)
 cad_packages=(libocct-data-exchange-dev)
-test_packages=("${cad_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev python3 python3-numpy
+python_packages=("${cad_packages[@]}" patchelf python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)
+test_packages=("${python_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev python3
   python3-pytest python3-yaml valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)
 gallery_packages=(imagemagick fonts-dejavu-core)
 docs_packages=(doxygen python3)
-python_packages=("${cad_packages[@]}" patchelf python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)
 
 purpose='test'
 while (($#)); do

@@ -137,6 +137,29 @@ function(check_cad_reader prefix)
   endif()
 endfunction()
 
+# check_python(PREFIX): the installed package for Python finds the installed library, and the reader of CAD files.
+function(check_python prefix)
+  file(GLOB package ${prefix}/lib/python3*/dist-packages)
+  execute_process(COMMAND /usr/bin/python3 -c "import numpy" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  if(NOT package OR NOT status EQUAL 0)
+    message(STATUS "the package for Python is not installed, or NumPy is not there: it is not tried")
+    return()
+  endif()
+  string(CONCAT code "import sys, tessera as ts\n"
+    "print(ts.__file__, ts.read(sys.argv[1]).patches().tessellate(1e-3).is_proven, len(ts.read(sys.argv[2])) > 0)\n")
+  set(models ${SOURCE}/tools/models)
+  set(second ${models}/goblet.json)
+  if(EXISTS ${BUILD}/tools/tessera-cad-reader)
+    set(second ${models}/bearing_block.step)
+  endif()
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=TESSERA_C_LIBRARY --unset=TESSERA_CAD_READER --unset=LD_LIBRARY_PATH
+      PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${package} /usr/bin/python3 -c ${code} ${models}/goblet.json ${second}
+    WORKING_DIRECTORY ${WORK} OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT found STREQUAL "${package}/tessera/__init__.py True True")
+    message(FATAL_ERROR "the installed package for Python says: ${found}")
+  endif()
+endfunction()
+
 function(build_by_pkg_config prefix)
   file(GLOB_RECURSE found ${prefix}/tessera.pc)
   get_filename_component(folder ${found} DIRECTORY)
@@ -177,6 +200,7 @@ if(WAY STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} ${config})
   check_package(${prefix})
   check_cad_reader(${prefix})
+  check_python(${prefix})
   if(PYTHON)
     foreach(guide README engine/docs/tessellation-backend engine/docs/ray-hits engine/docs/renderer
         engine/docs/tracking-speed engine/docs/c)

@@ -8,6 +8,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 
 from setuptools import Distribution, setup
 from setuptools.command.build_py import build_py
@@ -19,6 +20,7 @@ PREBUILT = os.environ.get("TESSERA_PYTHON_PREBUILT")
 BUILD = pathlib.Path(PREBUILT or os.environ.get("TESSERA_PYTHON_BUILD", SOURCES / "build" / "python"))
 # Every machine has these; a second C++ library in one process does harm.
 OF_THE_SYSTEM = re.compile(r"ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s|z)\.so")
+HEADERS = {"libxsimd-dev", "nlohmann-json3-dev"}  # the packages whose headers are compiled into the library
 
 
 def version():
@@ -61,7 +63,10 @@ def needed_by(file):
 
 
 def bundle(folder):
-    """Fills tessera/lib. Its libraries have names of their own, so that they and others of a process stay apart."""
+    """Fills tessera/lib, and returns the files of the libraries that it copied.
+
+    Copies have names of their own, so that they and other libraries of a process stay apart.
+    """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     files = [pathlib.Path(shutil.copy(file, folder)) for file in built()]
@@ -78,6 +83,27 @@ def bundle(folder):
         soname = ["--set-soname", file.name] if file.name in names.values() else []
         for change in filter(None, (changes, soname, ["--set-rpath", "$ORIGIN"])):
             subprocess.run(["patchelf", *change, str(file)], check=True)
+    return sorted(os.path.realpath(path) for path in libraries.values())
+
+
+def write_licences(folder, libraries):
+    """Writes what Debian's packages say about the licences of libraries, and the texts that they refer to."""
+    folder.mkdir(exist_ok=True)
+    shutil.copy(SOURCES / "LICENSE", folder / "tessera.txt")
+    if shutil.which("dpkg-query") is None:
+        message = "setup.py: this is not Debian: of the licences the wheel holds Tessera's alone; do not pass it on"
+        print(message, file=sys.stderr)
+        return
+    owned = subprocess.run(["dpkg-query", "-S", *libraries], check=True, stdout=subprocess.PIPE, text=True).stdout
+    packages = sorted({line.split(":")[0] for line in owned.splitlines()} | HEADERS)
+    for package in packages:
+        text = pathlib.Path("/usr/share/doc", package, "copyright").read_text(encoding="utf-8")
+        (folder / f"{package}.txt").write_text(text, encoding="utf-8")
+        for name in re.findall(r"/usr/share/common-licenses/([\w.-]*\w)", text):
+            shutil.copy(pathlib.Path("/usr/share/common-licenses", name), folder)
+    query = ["dpkg-query", "-W", "-f", "${source:Package} ${source:Version} (${Package})\n", *packages]
+    sources = subprocess.run(query, check=True, stdout=subprocess.PIPE, text=True).stdout
+    (folder / "SOURCES.txt").write_text(f"Sources of the libraries, at https://snapshot.debian.org:\n\n{sources}")
 
 
 class BuildWithLibrary(build_py):
@@ -86,15 +112,22 @@ class BuildWithLibrary(build_py):
         for tool in ("cmake", "patchelf", "strip"):
             if shutil.which(tool) is None:
                 raise SystemExit(f"found no program {tool}: run tools/setup.sh --for python")
-        bundle(pathlib.Path(self.build_lib) / "tessera" / "lib")
+        self.distribution.bundled = bundle(pathlib.Path(self.build_lib) / "tessera" / "lib")
 
 
 class WheelOfAnyPython(bdist_wheel):
     def get_tag(self):
         return "py3", "none", super().get_tag()[2]
 
+    def egg2dist(self, egginfo_path, distinfo_path):
+        super().egg2dist(egginfo_path, distinfo_path)
+        if self.distribution.bundled is not None:  # pip asks for the metadata before it builds
+            write_licences(pathlib.Path(distinfo_path, "licenses"), self.distribution.bundled)
+
 
 class DistributionOfOnePlatform(Distribution):
+    bundled = None  # the files of the libraries that the wheel holds
+
     def has_ext_modules(self):
         return True
 
