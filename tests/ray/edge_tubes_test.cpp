@@ -307,5 +307,21 @@ TEST(EdgeTubes, AppearWhereBordersPart) {
   EXPECT_TRUE(hit.flags.seam);
 }
 
+// Patches that move together need none, and nothing is measured where there are no tubes.
+TEST(EdgeTubes, BordersThatMoveTogetherNeedNone) {
+  const Shape shape = joined(cube(), 1e-6);
+  PatchSet set = value_of(make_patch_set(shape));
+  RayScene scene = value_of(RayScene::make(set, RaySceneOptions{.editable = true}));
+  for (std::size_t patch = 0; patch < set.patch_count(); ++patch) {
+    std::vector<Vec3> points(set.patch(patch).points().begin(), set.patch(patch).points().end());
+    for (Vec3& p : points) p = 0.9 * p;
+    ASSERT_TRUE(set.set_control_points(patch, points).ok());
+  }
+  ASSERT_TRUE(scene.refit().ok());
+  for (const double gap : value_of(scene.edge_gaps())) EXPECT_EQ(gap, 0);
+  EXPECT_EQ(scene.closest(ray({0.9 + 1e-6, 0.5, -1}, {0, 0, 1})).kind, HitKind::miss);
+  EXPECT_NEAR(scene.closest(ray({0.45, 0.45, -1}, {0, 0, 1})).t, 1, 1e-12);
+}
+
 }  // namespace
 }  // namespace tessera::test
