@@ -41,9 +41,8 @@ constexpr char usage[] =
     "All hits of random rays at trimmed CAD files beside OpenCASCADE's, one thread: differences by cause, and times.\n"
     "Without files: all of the folder TESSERA_TEST_DATA. About 5 minutes.\n"
     "  --rays N  casts N rays at each file [2000]\n"
-    "Exit status 1 if a difference is not explained, if all hits lack a closest hit, or if an odd count of them "
-    "crosses\n"
-    "closed solids.\n";
+    "Exit status 1 if a difference is not explained, if all() has no hit where closest() has one, or if rays cross\n"
+    "closed solids an odd number of times.\n";
 
 constexpr double tolerance = 1e-7;      // of OpenCASCADE's intersector: its Precision::Confusion()
 constexpr std::size_t max_printed = 5;  // differences of a file

@@ -10,7 +10,8 @@
 namespace tessera::bench {
 namespace {
 
-constexpr double grazing = 1e-3;  // of the slope: there, two roots of a surface lie within about its square of the size
+constexpr double grazing =
+    1e-3;  // slope of a tangent ray: its two roots lie nearer together than about 1e-3 of the radius
 
 double distance_from(const Ray& ray, const Vec3& p) {
   const Vec3 off = p - ray.origin;
@@ -70,7 +71,6 @@ RayOutcome RayReferee::compare(const Ray& ray, std::span<const FaceHit> ours, st
       continue;
     }
     taken[best] = true;
-    ++outcome.same;
     outcome.apart = std::max(outcome.apart, least);
   }
   for (std::size_t k = 0; k < theirs.size(); ++k)

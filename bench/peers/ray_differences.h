@@ -38,10 +38,9 @@ struct RayDifference {
   RayCause cause = RayCause::unexplained;
 };
 
-/// The outcome of a ray. Hits are in the order of t.
+/// The outcome of a ray.
 struct RayOutcome {
-  std::size_t same = 0;  ///< pairs
-  double apart = 0;      ///< the largest difference of t in a pair
+  double apart = 0;  ///< the largest difference of t in a pair
   std::vector<RayDifference> differences;
 };
 
