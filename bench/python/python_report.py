@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What the package for Python costs: the same task in Python and in C++, in turn, in one process and the same memory, best
-of several; small calls; and the import. All bytes that both write are compared before a figure is printed.
+"""What the package for Python costs: the same task in Python and in C++, in turn, in one process and the same memory,
+best of several; small calls; and the import. All bytes that both write are compared before a figure is printed.
 
 Usage: PYTHONPATH=tools/python bench/python/python_report.py TASKS [SIDE]
 TASKS: the library tessera_python_tasks of a build; SIDE: patches along a side of the surface [100]

@@ -2,6 +2,7 @@
 
 import base64
 import html
+import html.parser
 import json
 import re
 
@@ -65,3 +66,22 @@ def test_names_cannot_leave_the_frame():
     model = ts.bezier([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]], name='"><script>alert(1)</script>')
     text = model._repr_html_()
     assert text.count("<script>") == 0 and text.startswith("<iframe ") and text.endswith("</iframe>")
+
+
+def test_two_views_on_one_page_stay_apart(goblet, trimmed):
+    class Page(html.parser.HTMLParser):
+        def __init__(self):
+            super().__init__()
+            self.tags = []
+
+        def handle_starttag(self, tag, attributes):
+            self.tags.append((tag, dict(attributes)))
+
+    page = Page()
+    page.feed(goblet._repr_html_() + trimmed._repr_html_() + goblet._repr_html_())
+    # Each view is a frame without an origin: the page has no ids, names or scripts of it, and no access to it.
+    assert [tag for tag, _ in page.tags] == ["iframe"] * 3
+    for _, attributes in page.tags:
+        assert attributes.keys() == {"srcdoc", "sandbox", "title", "style"} and attributes["sandbox"] == "allow-scripts"
+    first, second, third = (attributes["srcdoc"] for _, attributes in page.tags)
+    assert first == third != second
