@@ -1,8 +1,8 @@
 // Checks the promises of exact mode against a reference in interval arithmetic that shares no code. The classes are
-// difficult rays; rays from inside closed bodies, aimed at seams, none of which may escape; rays beside seams, whose
-// hits are counted; rays that leave a surface there; lines through closed bodies. Exit status 1 if a ray is missed,
-// falsely hit, hit on a wrong patch, escapes, is counted wrong without a flag, or hits again the surface that it
-// leaves.
+// difficult rays; rays beside the loops of trimmed faces; rays from inside closed bodies, aimed at seams, none of which
+// may escape; rays beside seams, whose hits are counted; rays that leave a surface there; lines through closed bodies.
+// Exit status 1 if a ray is missed, falsely hit, hit on a wrong patch, escapes, is counted wrong without a flag, or
+// hits again the surface that it leaves.
 //
 // tessera_proof_report --help
 
@@ -24,6 +24,7 @@
 #include "support/ray_classes.h"
 #include "support/ray_proof.h"
 #include "support/seam_rays.h"
+#include "support/trimmed_proof.h"
 
 namespace {
 
@@ -55,25 +56,26 @@ struct Wish {
   std::string only;  ///< part of a class's name
 };
 
-/// Casts rays of a class, in rounds on all cores, until enough hits are proven; at most 40 rays per hit.
-ProofTally checked(const test::RayClass& rays, const RayScene& scene, const Wish& wish, double size) {
+/// Casts rays, in rounds on all cores, until enough hits are proven; at most 40 rays per hit. `cast`: draws and checks
+/// one.
+template <class Tally>
+Tally checked(const Wish& wish, const std::function<void(test::Random&, Tally&)>& cast) {
   constexpr std::size_t round = 500;
   const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<ProofTally> parts(threads);
-  std::atomic<std::size_t> hits{0}, cast{0};
+  std::vector<Tally> parts(threads);
+  std::atomic<std::size_t> hits{0}, rays{0};
   on_all_cores([&](unsigned thread) {
     test::Random random(wish.seed * 1000 + thread);
-    ProofTally& part = parts[thread];
-    while (hits < wish.hits && cast < 40 * wish.hits) {
+    Tally& part = parts[thread];
+    while (hits < wish.hits && rays < 40 * wish.hits) {
       const std::size_t before = part.hits;
-      for (std::size_t k = 0; k < round; ++k)
-        test::check_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, part);
+      for (std::size_t k = 0; k < round; ++k) cast(random, part);
       hits += part.hits - before;
-      cast += round;
+      rays += round;
     }
   });
-  ProofTally sum;
-  for (const ProofTally& part : parts) sum.add(part);
+  Tally sum;
+  for (const Tally& part : parts) sum.add(part);
   return sum;
 }
 
@@ -89,20 +91,64 @@ std::string in_units(std::vector<double>& errors) {
 /// The largest share of misses that is consistent with 0 of n at 95% confidence, 1 - 0.05^(1/n).
 double bound_of_none(std::size_t n) { return n == 0 ? 1 : -std::expm1(std::log(0.05) / static_cast<double>(n)); }
 
-bool report(const test::RayClass& rays, const Wish& wish) {
-  const auto begin = std::chrono::steady_clock::now();
-  const PatchSet set = test::value_of(PatchSet::make(rays.patches));
-  const double size = set.box().diagonal();
-  ProofTally tally = checked(rays, exact_scene(set), wish, size);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  const bool good = tally.missed == 0 && tally.false_hits == 0 && tally.wrong_patch == 0;
-  std::printf("| %s | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %s | %s | %.1e |\n", rays.name.c_str(),
+void print_row(const std::string& name, ProofTally& tally) {
+  std::printf("| %s | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %zu | %s | %s | %.1e |\n", name.c_str(),
               tally.rays, tally.hits, tally.missed, tally.false_hits, tally.wrong_patch, tally.undecidable,
               tally.touching, tally.contradicted, tally.incomplete, in_units(tally.t_errors).c_str(),
               in_units(tally.u_errors).c_str(), bound_of_none(tally.hits));
   std::fflush(stdout);
-  std::fprintf(stderr, "%s: %.0f s\n", rays.name.c_str(), seconds.count());
-  return good;
+}
+
+/// Tells how long a class took when it goes.
+class Timing {
+ public:
+  explicit Timing(const std::string& name) : name_(name) {}
+  Timing(const Timing&) = delete;
+  Timing& operator=(const Timing&) = delete;
+  ~Timing() {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
+    std::fprintf(stderr, "%s: %.0f s\n", name_.c_str(), seconds.count());
+  }
+
+ private:
+  std::string name_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+bool report(const test::RayClass& rays, const Wish& wish) {
+  const Timing timing(rays.name);
+  const PatchSet set = test::value_of(PatchSet::make(rays.patches));
+  const RayScene scene = exact_scene(set);
+  const double size = set.box().diagonal();
+  ProofTally tally = checked<ProofTally>(wish, [&](test::Random& random, ProofTally& part) {
+    test::check_ray(rays.patches, scene, rays.draw(random), 5e-12 * size, size, part);
+  });
+  print_row(rays.name, tally);
+  return tally.missed == 0 && tally.false_hits == 0 && tally.wrong_patch == 0;
+}
+
+/// Adds a sentence to `notes`.
+bool report_trimmed(const test::TrimmedClass& rays, const Wish& wish, std::string& notes) {
+  const Timing timing(rays.name);
+  test::TrimmedTally tally = checked<test::TrimmedTally>(wish, [&](test::Random& random, test::TrimmedTally& part) {
+    const test::TrimmedCase& one = rays.cases[random() % rays.cases.size()];
+    test::TrimmedCheck(one, test::draw_ray(one, random), part);
+  });
+  print_row(rays.name, tally);
+  const auto add = [&](const char* format, auto... numbers) {
+    char text[200];
+    std::snprintf(text, sizeof text, format, numbers...);
+    notes += text;
+  };
+  notes += rays.name;
+  add(": roots decided within 1e-5, 1e-8, 1e-11 of a loop: %zu, %zu, %zu; rays where rounding decides: %zu\n",
+      tally.near[0], tally.near[1], tally.near[2], tally.at_loops);
+  if (rays.cases[0].is_joined)
+    add("  rays that must meet an edge or one of its faces: %zu; closest hits of edges: %zu; rays moved aside there: "
+        "%zu,\n"
+        "  all hits of these wrong by parity: %zu\n",
+        tally.between, tally.edges, tally.moved_rays, tally.odd);
+  return tally.good();
 }
 
 /// Counts rays from inside a closed body that miss.
@@ -203,7 +249,7 @@ constexpr const char* usage =
     "  --inside N    rays from inside each of four closed bodies (1000000)\n"
     "  --seams N     rays 1e-6 to 1e-15 beside the seams of each of four bodies, and rays that leave it there (20000)\n"
     "  --lines N     lines through each of four closed bodies, which must cross them an even number of times (250000)\n"
-    "  --only TEXT   classes and bodies whose name holds TEXT\n"
+    "  --only TEXT   classes and bodies whose name holds TEXT, such as 'trimmed' for all classes of trimmed faces\n"
     "  --seed N      of the random numbers (1)\n"
     "Columns: rays cast; hits that the reference has proven; of these missed; hits whose point is not on patch and "
     "ray; "
@@ -255,6 +301,10 @@ int main(int argc, char** argv) {
   bool good = true;
   for (const test::RayClass& rays : test::ray_classes())
     if (wanted(rays.name)) good = report(rays, *wish) && good;
+  std::string notes;
+  for (const test::TrimmedClass& rays : test::trimmed_classes())
+    if (wanted(rays.name)) good = report_trimmed(rays, *wish, notes) && good;
+  std::printf("%s", notes.c_str());
   for (const auto& [name, patches] :
        {std::pair{"bicubic body", test::closed_body()}, {"rational sphere", test::sphere()}}) {
     const auto draw = [&](test::Random& random) { return from_inside(patches, random); };

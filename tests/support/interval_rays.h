@@ -189,7 +189,14 @@ class IntervalNet {
     return b[0];
   }
   /// (1 - t) a + t b for t in [0, 1].
-  static Interval blend(Interval a, Interval b, Interval t) { return (Interval::at(1) - t) * a + t * b; }
+  static Interval blend(Interval a, Interval b, Interval t) {
+    const Interval rest = Interval::at(1) - t;
+    return share(a, {std::max(rest.lo, 0.0), rest.hi}) + share(b, t);
+  }
+  /// t a for t >= 0: two products instead of four.
+  static Interval share(Interval a, Interval t) {
+    return Interval::around((a.lo < 0 ? t.hi : t.lo) * a.lo, (a.hi < 0 ? t.lo : t.hi) * a.hi);
+  }
   static void restrict_row(Interval* row, std::size_t step, int degree, double from, double to) {
     const auto at = [&](int k) -> Interval& { return row[static_cast<std::size_t>(k) * step]; };
     const bool halves = to == 0.5;
