@@ -1,6 +1,8 @@
 #include "tessera/ray_scene.h"
 
 #include <algorithm>
+#include <mutex>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,35 @@ Status stale() {
 Status short_output(std::size_t rays, std::size_t room) {
   return Status(StatusCode::buffer_too_small, counted(rays, "ray") + ", but room for " + counted(room, "result"));
 }
+
+/// Gathers the hits of tasks that end in any order. The first task that has not ended writes to the list itself, so a
+/// single thread needs no memory beside the list.
+class HitsInOrder {
+ public:
+  HitsInOrder(std::size_t tasks, std::vector<Hit>& list) : list_(list), found_(tasks), ended_(tasks) {}
+
+  /// Returns where the hits of a task are appended.
+  std::vector<Hit>& begin(std::size_t task) {
+    const std::lock_guard lock(mutex_);
+    return task == next_ ? list_ : found_[task];
+  }
+  /// Appends the hits of all tasks up to the first that has not ended.
+  void end(std::size_t task) {
+    const std::lock_guard lock(mutex_);
+    ended_[task] = true;
+    for (; next_ < ended_.size() && ended_[next_]; ++next_) {
+      const std::vector<Hit> found = std::exchange(found_[next_], {});
+      list_.insert(list_.end(), found.begin(), found.end());
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Hit>& list_;
+  std::vector<std::vector<Hit>> found_;  ///< of tasks that began before it was their turn
+  std::vector<bool> ended_;
+  std::size_t next_ = 0;  ///< the first task that has not ended
+};
 
 }  // namespace
 
@@ -83,31 +114,29 @@ Status RayScene::Impl::occluded(const RayBatch& batch, const View1<std::uint8_t>
 
 Status RayScene::Impl::all(std::span<const Ray> rays, HitLists& lists, const Execution& execution) const {
   lists.hits.clear();
-  lists.first.assign(1, 0);
+  lists.first.assign(rays.size() + 1, 0);
   if (!fresh()) return stale();
   prepare_borders();
   const std::size_t tasks = (rays.size() + rays_per_task - 1) / rays_per_task;
-  std::vector<std::vector<Hit>> found(tasks);
-  std::vector<std::size_t> ends(rays.size());
+  HitsInOrder in_order(tasks, lists.hits);
   std::vector<Status> faults(tasks);
   Status status = parallel_for(tasks, 1, execution, [&](std::size_t begin, std::size_t end) {
     for (std::size_t task = begin; task < end; ++task) {
+      std::vector<Hit>& hits = in_order.begin(task);
       const std::size_t last = std::min(rays.size(), (task + 1) * rays_per_task);
       for (std::size_t k = task * rays_per_task; k < last && faults[task].ok(); ++k) {
-        faults[task] = all_of(rays[k], found[task]);
-        ends[k] = found[task].size();
+        const std::size_t before = hits.size();
+        faults[task] = all_of(rays[k], hits);
+        lists.first[k + 1] = hits.size() - before;
       }
+      in_order.end(task);
     }
   });
   if (!status.ok()) return status;
   for (const Status& fault : faults) {
     if (!fault.ok()) return fault;
   }
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    const std::size_t task = k / rays_per_task, before = k % rays_per_task == 0 ? 0 : ends[k - 1];
-    lists.first.push_back(lists.first.back() + (ends[k] - before));
-    if (k % rays_per_task == 0) lists.hits.insert(lists.hits.end(), found[task].begin(), found[task].end());
-  }
+  std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
   return {};
 }
 
