@@ -91,7 +91,9 @@ class ExactScene final : public PatchScene, private ExactSource {
   /// Returns the radius of tubes around edges whose faces meet: roots beside them are right up to the tolerance.
   double tube_radius() const { return 4 * std::max(tolerance(), least_tolerance); }
   void measure();
-  void append_hits(RayQuery& query, const RayQuery& given, std::vector<Hit>& hits) const;
+  void trace_alone(RayQuery& query) const;
+  void complete_roots(RayQuery& query) const;
+  void append_hits(const RayQuery& query, const RootsAside& found, std::vector<Hit>& hits) const;
   template <class Done>
   void trace_all(const RayBatch& batch, std::size_t begin, std::size_t end, RootsWanted wanted, const Done& done) const;
   template <class Done>
@@ -340,37 +342,38 @@ void ExactScene::trace(std::span<RayQuery* const> queries) const {
   trace_queries(queries, space);
 }
 
-/// Appends the hits of a query, which is the given one or for its line moved sideways.
-void ExactScene::append_hits(RayQuery& query, const RayQuery& given, std::vector<Hit>& hits) const {
+void ExactScene::trace_alone(RayQuery& query) const {
+  const FlushDenormals flush;
+  trace(query);
+}
+
+/// Makes the roots of a line those of its hits.
+void ExactScene::complete_roots(RayQuery& query) const {
   keep_distinct(set(), adjacency_.of(set()), query.roots);
   complete_folds(set(), adjacency_.of(set()), frame_, query.line, trims_, query.roots);
-  for (const LeafRoot& root : query.roots) {
+}
+
+/// Appends the hits of a query: its roots, or those of its line moved sideways.
+void ExactScene::append_hits(const RayQuery& query, const RootsAside& found, std::vector<Hit>& hits) const {
+  for (const LeafRoot& root : found.roots) {
     if (root.patch >= own_patches()) continue;
-    Hit& hit = hits.emplace_back(hit_at(query.line, root));
-    hit.t = query.t_of(root);
-    if (&query != &given) hit.residual = distance(given.line, frame_.to_scene(hit.position)) / frame_.scale;
-    hit.flags.seam = given.seam_gap > 0;
-    hit.flags.incomplete = given.incomplete;
-    hit.steps = saturated_u16(given.steps);
+    Hit& hit = hits.emplace_back(hit_at(found.line, root));
+    hit.t = std::clamp(found.line.t_at(root.s), query.ray.tnear, query.ray.tfar);
+    hit.flags.seam = query.seam_gap > 0;
+    if (hit.flags.seam) hit.residual = distance(query.line, frame_.to_scene(hit.position)) / frame_.scale;
+    hit.flags.incomplete = query.incomplete;
+    hit.steps = saturated_u16(query.steps);
   }
 }
 
 void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
-  for (std::size_t way = 0; query.seam_gap > 0 && way < ways_aside; ++way) {
-    const RayLine line = line_aside(query.line, way, query.seam_gap, scene_box_);
-    RayQuery other(query.ray, line, RootsWanted::all);
-    if (!line.empty) {
-      const FlushDenormals flush;
-      trace(other);
-    }
-    query.steps += other.steps, query.overflow |= other.overflow;
-    if (query.overflow) return;
-    if (other.seam_gap > 0) continue;
-    query.incomplete = other.incomplete;
-    return append_hits(other, query, hits);
-  }
-  query.incomplete |= query.seam_gap > 0;
-  append_hits(query, query, hits);
+  complete_roots(query);
+  if (query.seam_gap == 0) return append_hits(query, {query.line, std::move(query.roots)}, hits);
+  const auto find_roots = [&](RayQuery& other) { trace_alone(other), complete_roots(other); };
+  const RootsAside aside = roots_aside(query, scene_box_, find_roots);
+  if (query.overflow) return;
+  query.incomplete = aside.incomplete;
+  append_hits(query, aside, hits);
 }
 
 Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
@@ -378,10 +381,7 @@ Status ExactScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   const RayLine along = line(ray);
   if (along.empty) return {};
   RayQuery query(ray, along, RootsWanted::all);
-  {
-    const FlushDenormals flush;
-    trace(query);
-  }
+  trace_alone(query);
   if (!query.overflow) hits_of(query, hits);
   return query.overflow ? Status(StatusCode::out_of_memory, "out of memory") : Status();
 }
