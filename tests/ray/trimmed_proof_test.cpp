@@ -8,6 +8,12 @@
 namespace tessera::test {
 namespace {
 
+std::vector<Hit> all_hits_of(const RayScene& scene, const Ray& ray) {
+  HitLists lists;
+  EXPECT_TRUE(scene.all({&ray, 1}, lists).ok());
+  return lists.hits;
+}
+
 TrimmedTally tally_of(const TrimmedCase& one, int rays, std::uint64_t seed) {
   Random random(seed);
   TrimmedTally tally;
@@ -71,6 +77,18 @@ TEST(TrimmedProof, SeesGaps) {
   options.seams = false;
   one.scene = std::make_shared<const RayScene>(value_of(RayScene::make(*one.set, options)));
   EXPECT_GT(tally_of(one, 1000, 43).missed, 10u);
+}
+
+// The corner of a hole lies on a border between patches. The true root lies in the hole, 3e-13 before the border; the
+// patch beyond sees it on the border, where it is kept.
+TEST(TrimmedProof, ARootBeyondABorderIsUnsureBesideALoop) {
+  const Ray ray{{0x1.28ee0f85e751cp+1, 0x1.e7fb02767d952p-1, 0x1.0db7aa9396feap+1},
+                {-0x1.3570015a91997p+0, -0x1.50723f896b1c6p-3, -0x1.79ed343cbcea2p+0}};
+  const TrimmedCase one = trimmed::tangent_loops().cases.back();
+  const std::vector<Hit> hits = all_hits_of(*one.scene, ray);
+  EXPECT_LE(hits.size(), 1u);
+  for (const Hit& hit : hits) EXPECT_TRUE(hit.flags.uncertified);
+  EXPECT_TRUE(one.scene->closest(ray).kind == HitKind::miss || one.scene->closest(ray).flags.uncertified);
 }
 
 }  // namespace

@@ -104,10 +104,32 @@ Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execut
   return parallel_for(leaves.size(), leaves_per_task, quiet, find_squares);
 }
 
+/// A root beyond a side of its patch, within rounding, is found on the side. So squares there are left open where a loop
+/// may be near.
+void LeafTrims::open_sides(const Leaf& leaf, KeptSquares& squares) const {
+  constexpr double near = 1e-6;  // of a leaf's side
+  constexpr unsigned count = KeptSquares::per_side, last = count - 1;
+  const RegionCells& cells = impl_of(regions_.of(leaf.patch)).cells;
+  const bool starts_u = leaf.u0 == 0, ends_u = leaf.u0 + leaf.du == 1;
+  const bool starts_v = leaf.v0 == 0, ends_v = leaf.v0 + leaf.dv == 1;
+  const double reach = 0.5 / count + near;
+  for (unsigned i = 0; i < count; ++i)
+    for (unsigned j = 0; j < count; ++j) {
+      const bool is_at_side =
+          (i == 0 && starts_u) || (i == last && ends_u) || (j == 0 && starts_v) || (j == last && ends_v);
+      if (!is_at_side) continue;
+      const double u = leaf.u0 + (i + 0.5) / count * leaf.du, v = leaf.v0 + (j + 0.5) / count * leaf.dv;
+      const TrimSide side = cells.locate_all(around(leaf.patch, u, v, reach * leaf.du, reach * leaf.dv));
+      const std::uint64_t bit = std::uint64_t{1} << (count * i + j);
+      if (side != TrimSide::inside) squares.inside &= ~bit;
+    }
+}
+
 KeptSquares LeafTrims::squares_of(const SetView& set, Leaf& leaf) const {
   KeptSquares squares;
   if (!regions_.is_cut(leaf.patch)) {
     squares.inside = ~std::uint64_t{0};
+    if (regions_.has_region(leaf.patch)) open_sides(leaf, squares);
     return squares;
   }
   const TrimRegion& region = regions_.of(leaf.patch);
@@ -117,14 +139,16 @@ KeptSquares LeafTrims::squares_of(const SetView& set, Leaf& leaf) const {
   for (int k = 0; k < max_shrinks && kept.use == PatchUse::cut && shrink(leaf, patch, kept.hull); ++k)
     kept = kept_part(region, pieces, rectangle_of(patch, leaf));
   SquareMarker(region, patch, leaf, squares).mark(kept, 0, 0, KeptSquares::per_side);
+  open_sides(leaf, squares);
   return squares;
 }
 
-/// A rectangle about a point of a patch, in the surface's parameters.
+/// A rectangle about a point of a patch, in the surface's parameters. It may reach into the patch's neighbours: a root
+/// that lies just beyond a border is found on the border, too.
 Domain LeafTrims::around(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const {
-  const Domain& domain = set_->sources[patch].domain;
-  return {domain.u_at(std::max(u - reach_u, 0.0)), domain.u_at(std::min(u + reach_u, 1.0)),
-          domain.v_at(std::max(v - reach_v, 0.0)), domain.v_at(std::min(v + reach_v, 1.0))};
+  const Domain &domain = set_->sources[patch].domain, face = impl_of(regions_.of(patch)).domain;
+  return {std::max(domain.u_at(u - reach_u), face.u0), std::min(domain.u_at(u + reach_u), face.u1),
+          std::max(domain.v_at(v - reach_v), face.v0), std::min(domain.v_at(v + reach_v), face.v1)};
 }
 
 TrimSide LeafTrims::side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const {

@@ -33,12 +33,13 @@ class LeafTrims final : public RootSides {
   TrimSide side_of(const LeafRoot& root) const override;
   /// Whether a root of any patch is not outside. Always allowed.
   bool keeps(const LeafRoot& root) const {
-    return !any() || !regions_.is_cut(root.patch) || side_of(root) != TrimSide::outside;
+    return !any() || !regions_.has_region(root.patch) || side_of(root) != TrimSide::outside;
   }
   std::size_t memory_bytes() const { return squares_.capacity() * sizeof(KeptSquares) + regions_.memory_bytes(); }
 
  private:
   KeptSquares squares_of(const SetView& set, Leaf& leaf) const;
+  void open_sides(const Leaf& leaf, KeptSquares& squares) const;
   Domain around(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
 
   const PatchSet::Impl* set_ = nullptr;

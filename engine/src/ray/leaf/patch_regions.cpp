@@ -21,8 +21,11 @@ Status PatchRegions::build(const SetView& set, const Execution& execution) {
   if (Status status = parallel_for(made.size(), 1, quiet, locate_points); !status.ok()) return status;
   regions_.clear();
   for (std::optional<TrimRegion>& region : made) regions_.push_back(*std::move(region));
-  regions_of_.assign(set.patch_count(), std::uint32_t{no_id});
-  for (const PatchTrims::Cut& cut : trims_->cuts) regions_of_[cut.patch] = cut.region;
+  std::vector<std::uint32_t> of_surfaces(set.impl().surface_count, no_id);
+  for (const PatchTrims::Cut& cut : trims_->cuts) of_surfaces[set.source(cut.patch).surface] = cut.region;
+  regions_of_.clear();
+  for (std::size_t patch = 0; patch < set.patch_count(); ++patch)
+    regions_of_.push_back(of_surfaces[set.source(patch).surface]);
   return {};
 }
 

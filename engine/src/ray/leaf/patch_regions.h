@@ -23,7 +23,9 @@ class PatchRegions {
   /// Whether any patch is cut; otherwise no other call is allowed.
   bool any() const { return trims_ != nullptr; }
   bool is_cut(std::uint32_t patch) const { return trims_->is_cut[patch]; }
-  /// The region of a cut patch's face, in the parameters of its surface. It locates points.
+  /// Whether the face of the patch has a cut patch.
+  bool has_region(std::uint32_t patch) const { return regions_of_[patch] != no_id; }
+  /// The region of a face with a cut patch, in the parameters of its surface. It locates points.
   const TrimRegion& of(std::uint32_t patch) const { return regions_[regions_of_[patch]]; }
   /// The pieces of that region that cut the patch.
   std::span<const std::uint32_t> pieces_of(std::uint32_t patch) const;
@@ -37,7 +39,7 @@ class PatchRegions {
  private:
   std::shared_ptr<const PatchTrims> trims_;
   std::vector<TrimRegion> regions_;        ///< as those of `trims_`, and they locate points
-  std::vector<std::uint32_t> regions_of_;  ///< `[patch]`: into `regions_`, if it is cut
+  std::vector<std::uint32_t> regions_of_;  ///< `[patch]`: into `regions_`, or no_id
 };
 
 }  // namespace tessera::inline abi_0_1
