@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import contextvars
 import ctypes
+import os
+import queue
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -52,7 +54,7 @@ def run(
 ) -> None:
     """Calls a function whose last argument is a tsr_run.
 
-    A long call of the main thread runs in a thread of its own, so that an interrupt (Ctrl-C) ends it. ``makes``: the
+    A long call of the main thread runs in another thread, so that an interrupt (Ctrl-C) ends it. ``makes``: the
     handle that the call makes; an interrupt does not wait for it, and it is released once it is made.
     """
     count = _threads.get()
@@ -65,6 +67,41 @@ def run(
         call(function, *arguments, options)
         return
     _Run(function, arguments, count, progress, makes).finish()
+
+
+class _Worker:
+    """A thread for the long calls of the main thread. It is kept, since oneTBB takes a millisecond to admit another."""
+
+    def __init__(self) -> None:
+        self._calls: queue.SimpleQueue[Callable[[], Any] | None] = queue.SimpleQueue()
+        self.put = self._calls.put
+        threading.Thread(target=self._loop, name="tessera", daemon=True).start()
+
+    def _loop(self) -> None:
+        while (work := self._calls.get()) is not None:
+            work()
+            del work  # and with it the caller's progress
+
+
+_worker: _Worker | None = None
+
+
+def _kept_worker() -> _Worker:
+    global _worker
+    if _worker is None:
+        _worker = _Worker()
+    return _worker
+
+
+def _leave_worker() -> None:
+    """Makes the next call start a worker: this one is busy, or the thread of a parent process."""
+    global _worker
+    worker, _worker = _worker, None
+    if worker is not None:
+        worker.put(None)
+
+
+os.register_at_fork(after_in_child=_leave_worker)
 
 
 class _Run:
@@ -101,6 +138,8 @@ class _Run:
             status = self._function(*self._arguments, ctypes.byref(self._options))
             if status and self._error is None:
                 self._error = _error(status)
+        except BaseException as error:
+            self._error = error
         finally:
             with self._lock:
                 is_left = self._left
@@ -111,13 +150,14 @@ class _Run:
     def _wait(self) -> None:
         is_started = False
         try:
-            threading.Thread(target=self._work, name="tessera", daemon=True).start()
+            _kept_worker().put(self._work)
             is_started = True
             self._done.acquire()
         except BaseException:
             self._cancel.value = 1
             with self._lock:
                 self._left = True
+            _leave_worker()
             # Arrays must not be written once their caller goes on. Handles are no concern of the caller's.
             while is_started and self._makes is None:
                 with contextlib.suppress(KeyboardInterrupt):

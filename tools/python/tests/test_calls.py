@@ -1,5 +1,6 @@
 """How calls run: interrupts, progress, threads, forks, handles that are released."""
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -167,3 +169,20 @@ def test_import_takes_nothing_else():
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     found = subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True)
     assert found.stdout.strip() == ""
+
+
+def test_a_long_call_lets_go_of_its_progress(goblet):
+    class Progress:
+        def __call__(self, share):
+            pass
+
+    progress = Progress()
+    goblet.patches().tessellate(1e-3, progress=progress)
+    found = weakref.ref(progress)
+    del progress
+    for _ in range(1000):
+        if found() is None:
+            return
+        gc.collect()
+        time.sleep(0.01)
+    raise AssertionError("the progress of a call that has ended is kept")
