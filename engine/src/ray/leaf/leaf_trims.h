@@ -31,8 +31,8 @@ class LeafTrims final : public RootSides {
   TrimSide side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
   /// The side of a root of a cut leaf. `border`: the loops pass between the places where the root may be.
   TrimSide side_of(const LeafRoot& root) const override;
-  /// Whether a root of any patch is not outside. Always allowed.
-  bool keeps(const LeafRoot& root) const {
+  /// Always allowed.
+  bool keeps(const LeafRoot& root) const override {
     return !any() || !regions_.has_region(root.patch) || side_of(root) != TrimSide::outside;
   }
   std::size_t memory_bytes() const { return squares_.capacity() * sizeof(KeptSquares) + regions_.memory_bytes(); }

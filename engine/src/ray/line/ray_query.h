@@ -92,6 +92,8 @@ inline bool comes_before(const LeafRoot& a, const LeafRoot& b) {
 class RootSides {
  public:
   virtual TrimSide side_of(const LeafRoot& root) const = 0;
+  /// Whether a root of any patch, also of a whole one, is not outside.
+  virtual bool keeps(const LeafRoot& root) const = 0;
 
  protected:
   ~RootSides() = default;

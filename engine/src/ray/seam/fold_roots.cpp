@@ -56,8 +56,8 @@ bool is_at(const LeafRoot& root, const LeafRoot& place, double apart) {
 class FoldCompletion {
  public:
   FoldCompletion(const SetView& set, const Adjacency& borders, const SceneFrame& frame, const RayLine& line,
-                 const LeafTrims& trims, std::vector<LeafRoot>& roots)
-      : set_(set), borders_(borders), frame_(frame), line_(line), trims_(trims), roots_(roots), taken_(roots.size()) {
+                 const RootSides& sides, std::vector<LeafRoot>& roots)
+      : set_(set), borders_(borders), frame_(frame), line_(line), sides_(sides), roots_(roots), taken_(roots.size()) {
     for (const LeafRoot& root : roots)
       if (root.certified) farthest_ = std::max(farthest_, root.residual + root.noise);
   }
@@ -101,7 +101,7 @@ class FoldCompletion {
     for (const LeafRoot& place : fan.beyond()) {
       // A way around the border may come back, up to rounding.
       const auto is_here = [&](const LeafRoot& other) { return is_at(other, place, apart); };
-      if (std::ranges::none_of(places, is_here) && trims_.keeps(place)) places.push_back(place);
+      if (std::ranges::none_of(places, is_here) && sides_.keeps(place)) places.push_back(place);
     }
     return places;
   }
@@ -130,7 +130,7 @@ class FoldCompletion {
   const Adjacency& borders_;
   const SceneFrame& frame_;
   const RayLine& line_;
-  const LeafTrims& trims_;
+  const RootSides& sides_;
   std::vector<LeafRoot>& roots_;
   std::vector<bool> taken_;
   double farthest_ = 0;  // from the line, of any certified root
@@ -139,8 +139,8 @@ class FoldCompletion {
 }  // namespace
 
 void complete_folds(const SetView& set, const Adjacency& borders, const SceneFrame& frame, const RayLine& line,
-                    const LeafTrims& trims, std::vector<LeafRoot>& roots) {
-  FoldCompletion(set, borders, frame, line, trims, roots).run();
+                    const RootSides& sides, std::vector<LeafRoot>& roots) {
+  FoldCompletion(set, borders, frame, line, sides, roots).run();
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "ray/leaf/leaf_trims.h"
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
@@ -21,8 +20,8 @@ namespace tessera::inline abi_0_1 {
 /// 3. If roots were found of an odd number of patches more or fewer, one of the others is added. It lies on the border
 ///    and is not certified.
 ///
-/// Does nothing at poles, and where a patch is seen from its edge. `trims`: those of the set's leaves. Throws bad_alloc.
+/// Does nothing at poles, and where a patch is seen from its edge. `sides`: those of the set's faces. Throws bad_alloc.
 void complete_folds(const SetView& set, const Adjacency& borders, const SceneFrame& frame, const RayLine& line,
-                    const LeafTrims& trims, std::vector<LeafRoot>& roots);
+                    const RootSides& sides, std::vector<LeafRoot>& roots);
 
 }  // namespace tessera::inline abi_0_1
