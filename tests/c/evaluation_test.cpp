@@ -33,6 +33,27 @@ TEST(CEvaluate, GridsInFloatAndDouble) {
   }
 }
 
+TEST(CEvaluate, GridsHaveALeastTime) {
+  const Handle<tsr_set> set = set_of(wavy_field(2, 3), TSR_SET_DOUBLE);
+  tsr_limits_info limits = sized<tsr_limits_info>();
+  limits.float_operations_per_second = 1e30, limits.double_operations_per_second = 1e30;
+  limits.store_bytes_per_second = 1000;
+  std::vector<float> positions(3 * 6 * 20);
+  tsr_jets jets = sized<tsr_jets>();
+  jets.position = out_of(positions, 3);
+  double stores = 0, operations = 0;
+  ASSERT_C(tsr_set_grid_limit(set.get(), 5, 4, &jets, &limits, &stores));
+  EXPECT_DOUBLE_EQ(stores, 4.0 * static_cast<double>(positions.size()) / 1000);
+  limits.store_bytes_per_second = 1e30, limits.float_operations_per_second = 1e6;
+  ASSERT_C(tsr_set_grid_limit(set.get(), 5, 4, &jets, &limits, &operations));
+  EXPECT_GT(operations, 3 * 120 * 3 / 1e6);  // each coordinate takes some multiply-adds
+  EXPECT_LT(operations, 3 * 120 * 64 / 1e6);
+  expect_c_error(tsr_set_grid_limit(set.get(), 5, 4, &jets, nullptr, &stores), TSR_INVALID_ARGUMENT, "limits");
+  expect_c_error(tsr_set_grid_limit(set.get(), 0, 4, &jets, &limits, &stores), TSR_INVALID_ARGUMENT, "");
+  limits.store_bytes_per_second = 0;
+  expect_c_error(tsr_set_grid_limit(set.get(), 5, 4, &jets, &limits, &stores), TSR_INVALID_ARGUMENT, "above 0");
+}
+
 TEST(CEvaluate, ScatteredPointsOfSurfaces) {
   const std::vector<BezierPatch> patches = wavy_field(2, 3);
   const Handle<tsr_set> set = set_of(patches, TSR_SET_POINTS);

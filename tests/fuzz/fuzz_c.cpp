@@ -247,6 +247,11 @@ class Program {
     const double u = number(), v = number();
     if (data_.ConsumeBool()) {
       (void)sound(tsr_set_grid(set, &u, 1, &v, 1, &jets, nullptr));
+      tsr_limits_info limits = sized<tsr_limits_info>();
+      limits.float_operations_per_second = limits.double_operations_per_second = limits.store_bytes_per_second =
+          number();
+      double seconds = 0;
+      (void)sound(tsr_set_grid_limit(set, size() % 64, size() % 64, &jets, &limits, &seconds));
     } else {
       const tsr_in surface = in(), at_u = in(), at_v = in();
       (void)sound(tsr_set_evaluate(set, &surface, &at_u, &at_v, &jets, nullptr));

@@ -387,9 +387,11 @@ typedef struct tsr_limits_info {
   double float_operations_per_second, double_operations_per_second; /* fused multiply-adds, of one thread */
   double store_bytes_per_second;
 } tsr_limits_info;
-/* Measures this machine on the calling thread, in a fraction of a second. `store_bytes`: the size of the output in
- * question; 0: 160 MiB. */
+/* Measures this machine on the calling thread, in a fraction of a second. `store_bytes`: of the output; 0: 160 MiB. */
 tsr_status tsr_limits(size_t store_bytes, tsr_limits_info* info);
+/* *seconds: the least that tsr_set_grid() takes one thread of a machine with these limits, whatever the program. */
+tsr_status tsr_set_grid_limit(const tsr_set* set, size_t count_u, size_t count_v, const tsr_jets* out,
+                              const tsr_limits_info* limits, double* seconds);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -2,8 +2,11 @@
 
 #include <bit>
 #include <span>
+#include <vector>
 
+#include "base/text.h"
 #include "c/objects.h"
+#include "tessera/limits.h"
 
 using namespace tessera;
 
@@ -36,9 +39,14 @@ CStatus read_jets(const void* u, const void* v, const tsr_jets* out, tsr_jets& j
   return read_struct("tsr_jets", out, jets);
 }
 
-/// Views of all outputs that are wanted.
-template <class T>
-CStatus views_of(const tsr_jets& out, QuantityViews<T>& views) {
+CStatus view_of(const char*, const tsr_out& from, bool& is_wanted) {
+  is_wanted = from.data != nullptr;
+  return {};
+}
+
+/// Views of all outputs that are wanted, or flags of these.
+template <class Views>
+CStatus views_of(const tsr_jets& out, Views& views) {
   CStatus status;
   const auto put = [&](const char* name, const tsr_out& from, auto& view) {
     if (status.code == TSR_OK) status = view_of(name, from, view);
@@ -66,6 +74,23 @@ CStatus evaluate_grid(const PatchSet& set, std::span<const double> u, std::span<
   const Result<GridPlan> plan = GridPlan::make(set, u, v, options);
   if (!plan) return plan.status();
   return evaluate(set, *plan, views, execution);
+}
+
+/// The least time that a grid of these outputs takes.
+CStatus grid_limit(const PatchSet& set, std::span<const double> u, std::span<const double> v, const tsr_jets& out,
+                   const tsr_limits_info& rates, double& seconds) {
+  QuantityFlags wanted;
+  if (CStatus status = views_of(out, wanted); status.code) return status;
+  GridPlanOptions options;
+  if (out.is_double) options.precision = Precision::double_precision;
+  const Result<GridPlan> plan = GridPlan::make(set, u, v, options);
+  if (!plan) return plan.status();
+  Limits limits;
+  limits.float_operations_per_second = rates.float_operations_per_second;
+  limits.double_operations_per_second = rates.double_operations_per_second;
+  limits.store_bytes_per_second = rates.store_bytes_per_second;
+  seconds = seconds_at_limit(limits, plan->work(wanted));
+  return {};
 }
 
 template <class T>
@@ -220,6 +245,28 @@ tsr_status tsr_set_evaluate(const tsr_set* set, const tsr_in* surface, const tsr
     if (!reading) return in_use(Object::Kind::set);
     return run_work(run,
                     [&](const Execution& execution) { return evaluate_points<double>(*of, samples, jets, execution); });
+  });
+}
+
+tsr_status tsr_set_grid_limit(const tsr_set* set, size_t count_u, size_t count_v, const tsr_jets* out,
+                              const tsr_limits_info* limits, double* seconds) {
+  return c_call([&]() -> CStatus {
+    const Held<CSet> of(set);
+    if (!of) return of.error();
+    tsr_jets jets{};
+    if (!limits || !seconds) return null_pointer(!limits ? "limits" : "seconds");
+    if (CStatus status = read_jets(limits, seconds, out, jets); status.code) return status;
+    tsr_limits_info rates{};
+    if (CStatus status = read_struct("tsr_limits_info", limits, rates); status.code) return status;
+    for (const double rate :
+         {rates.float_operations_per_second, rates.double_operations_per_second, rates.store_bytes_per_second})
+      if (!(rate > 0)) return bad("tsr_limits_info: a rate is " + text(rate) + ", it must be above 0");
+    const Reading reading(of->usage);
+    if (!reading) return in_use(Object::Kind::set);
+    return run_work(nullptr, [&](const Execution&) {
+      const std::vector<double> u(count_u, 0.5), v(count_v, 0.5);  // the work depends on their numbers alone
+      return grid_limit(of->set, u, v, jets, rates, *seconds);
+    });
   });
 }
 

@@ -89,6 +89,7 @@ _FUNCTIONS = {
     "tsr_scene_all": "ipppp",
     "tsr_hits_read": "ipppp",
     "tsr_limits": "isp",
+    "tsr_set_grid_limit": "ipssppp",
 }
 
 _TYPES: dict[str, type] = {
