@@ -104,25 +104,35 @@ Status LeafTrims::build(const SetView& set, std::span<Leaf> leaves, const Execut
   return parallel_for(leaves.size(), leaves_per_task, quiet, find_squares);
 }
 
+/// Whether a strip along a side, and a little around it, is inside as a whole. Its middle and its half lengths are in
+/// shares of the leaf.
+bool LeafTrims::is_inside(const Leaf& leaf, double u, double v, double along_u, double along_v, int halvings) const {
+  constexpr double near = 1e-6;
+  const RegionCells& cells = impl_of(regions_.of(leaf.patch)).cells;
+  const Domain box = around(leaf.patch, leaf.u0 + u * leaf.du, leaf.v0 + v * leaf.dv, (along_u + near) * leaf.du,
+                            (along_v + near) * leaf.dv);
+  const TrimSide side = cells.locate_all(box);
+  if (side != TrimSide::border || halvings == 0) return side == TrimSide::inside;
+  along_u *= 0.5, along_v *= 0.5;
+  return is_inside(leaf, u - along_u, v - along_v, along_u, along_v, halvings - 1) &&
+         is_inside(leaf, u + along_u, v + along_v, along_u, along_v, halvings - 1);
+}
+
 /// A root beyond a side of its patch, within rounding, is found on the side. So squares there are left open where a loop
 /// may be near.
 void LeafTrims::open_sides(const Leaf& leaf, KeptSquares& squares) const {
-  constexpr double near = 1e-6;  // of a leaf's side
-  constexpr unsigned count = KeptSquares::per_side, last = count - 1;
-  const RegionCells& cells = impl_of(regions_.of(leaf.patch)).cells;
-  const bool starts_u = leaf.u0 == 0, ends_u = leaf.u0 + leaf.du == 1;
-  const bool starts_v = leaf.v0 == 0, ends_v = leaf.v0 + leaf.dv == 1;
-  const double reach = 0.5 / count + near;
-  for (unsigned i = 0; i < count; ++i)
-    for (unsigned j = 0; j < count; ++j) {
-      const bool is_at_side =
-          (i == 0 && starts_u) || (i == last && ends_u) || (j == 0 && starts_v) || (j == last && ends_v);
-      if (!is_at_side) continue;
-      const double u = leaf.u0 + (i + 0.5) / count * leaf.du, v = leaf.v0 + (j + 0.5) / count * leaf.dv;
-      const TrimSide side = cells.locate_all(around(leaf.patch, u, v, reach * leaf.du, reach * leaf.dv));
-      const std::uint64_t bit = std::uint64_t{1} << (count * i + j);
-      if (side != TrimSide::inside) squares.inside &= ~bit;
+  constexpr unsigned count = KeptSquares::per_side;
+  constexpr int halvings = 4;
+  constexpr double half = 0.5 / count;
+  const auto open = [&](unsigned i, unsigned j) { squares.inside &= ~(std::uint64_t{1} << (count * i + j)); };
+  for (const double end : {0.0, 1.0}) {
+    const unsigned at = end == 0 ? 0 : count - 1;
+    for (unsigned k = 0; k < count; ++k) {
+      const double middle = (k + 0.5) / count;
+      if (leaf.u0 + end * leaf.du == end && !is_inside(leaf, end, middle, 0, half, halvings)) open(at, k);
+      if (leaf.v0 + end * leaf.dv == end && !is_inside(leaf, middle, end, half, 0, halvings)) open(k, at);
     }
+  }
 }
 
 KeptSquares LeafTrims::squares_of(const SetView& set, Leaf& leaf) const {

@@ -39,6 +39,7 @@ class LeafTrims final : public RootSides {
 
  private:
   KeptSquares squares_of(const SetView& set, Leaf& leaf) const;
+  bool is_inside(const Leaf& leaf, double u, double v, double along_u, double along_v, int halvings) const;
   void open_sides(const Leaf& leaf, KeptSquares& squares) const;
   Domain around(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
 
