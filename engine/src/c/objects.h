@@ -29,7 +29,7 @@ struct CSet : Object {
 
   /// The map from surfaces to patches, made by the first call. Errors: those of SurfaceMap::make().
   Result<const SurfaceMap*> surface_map() {
-    const std::lock_guard lock(map_mutex_);
+    const std::lock_guard lock(found_mutex_);
     if (!map_) {
       Result<SurfaceMap> made = SurfaceMap::make(set);
       if (!made) return made.status();
@@ -38,14 +38,28 @@ struct CSet : Object {
     return &*map_;
   }
 
+  /// What takes a look at every patch.
+  struct Extent {
+    std::uint64_t revision = 0;
+    Box3 box;
+    std::size_t memory_bytes = 0;
+  };
+  /// Returns the set's extent, found once for each revision.
+  Extent extent() {
+    const std::lock_guard lock(found_mutex_);
+    if (!extent_ || extent_->revision != set.revision()) extent_ = {set.revision(), set.box(), set.memory_bytes()};
+    return *extent_;
+  }
+
   PatchSet set;
   std::shared_ptr<const CModel> model;  ///< what it was made of
   std::optional<std::size_t> shape;     ///< of the model, if it is one shape's
   Usage usage;
 
  private:
-  std::mutex map_mutex_;
+  std::mutex found_mutex_;
   std::optional<SurfaceMap> map_;
+  std::optional<Extent> extent_;
 };
 
 struct CPlan : Object {

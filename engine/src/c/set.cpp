@@ -141,9 +141,9 @@ tsr_status tsr_set_describe(const tsr_set* set, tsr_set_info* info) {
     filled.patches = of->set.patch_count();
     filled.surfaces = of->set.surface_count();
     filled.cut_patches = of->set.cut_count();
-    filled.memory_bytes = of->set.memory_bytes();
-    filled.revision = of->set.revision();
-    const Box3 box = of->set.box();
+    const auto [revision, box, memory_bytes] = of->extent();
+    filled.memory_bytes = memory_bytes;
+    filled.revision = revision;
     const auto put = [](double(&to)[3], const Vec3& from) { to[0] = from.x, to[1] = from.y, to[2] = from.z; };
     put(filled.low, box.lower), put(filled.high, box.upper), put(filled.origin, of->set.origin());
     filled.fit_error = of->set.fit_error().distance;

@@ -66,7 +66,7 @@ class _Plan(Handle):
             patches._handle,
             ctypes.byref(options),
             progress=progress,
-            is_long=len(patches) > _LONG or wanted["fewest"],
+            is_long=(len(patches) > _LONG and wanted["rates"] is None) or wanted["fewest"],
             makes=handle,
         )
         self._handle = handle
