@@ -50,6 +50,7 @@ TEST(CEvaluate, GridsHaveALeastTime) {
   EXPECT_LT(operations, 3 * 120 * 64 / 1e6);
   expect_c_error(tsr_set_grid_limit(set.get(), 5, 4, &jets, nullptr, &stores), TSR_INVALID_ARGUMENT, "limits");
   expect_c_error(tsr_set_grid_limit(set.get(), 0, 4, &jets, &limits, &stores), TSR_INVALID_ARGUMENT, "");
+  EXPECT_NE(tsr_set_grid_limit(set.get(), SIZE_MAX, 4, &jets, &limits, &stores), TSR_OK);
   limits.store_bytes_per_second = 0;
   expect_c_error(tsr_set_grid_limit(set.get(), 5, 4, &jets, &limits, &stores), TSR_INVALID_ARGUMENT, "above 0");
 }

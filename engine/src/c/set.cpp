@@ -254,8 +254,8 @@ tsr_status tsr_set_grid_limit(const tsr_set* set, size_t count_u, size_t count_v
     const Held<CSet> of(set);
     if (!of) return of.error();
     tsr_jets jets{};
-    if (!limits || !seconds) return null_pointer(!limits ? "limits" : "seconds");
-    if (CStatus status = read_jets(limits, seconds, out, jets); status.code) return status;
+    if (!out || !limits || !seconds) return null_pointer(!out ? "out" : !limits ? "limits" : "seconds");
+    if (CStatus status = read_struct("tsr_jets", out, jets); status.code) return status;
     tsr_limits_info rates{};
     if (CStatus status = read_struct("tsr_limits_info", limits, rates); status.code) return status;
     for (const double rate :
