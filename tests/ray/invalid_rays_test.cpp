@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "ray_support.h"
+#include "support/torus.h"
 
 namespace tessera::test {
 namespace {
@@ -141,6 +142,22 @@ TEST(RayOptions, OutOfRange) {
   Execution execution;
   execution.cancel = &cancel;
   EXPECT_EQ(RayScene::make(set, {}, execution).status().code(), StatusCode::cancelled);
+}
+
+// A cancelled call leaves empty lists, also where it was cancelled between two of its tasks.
+TEST(InvalidRays, CancelledListsAreEmpty) {
+  const PatchSet set = set_of(Torus(4).patches(false));
+  const RayScene scene = value_of(RayScene::make(set));
+  const std::vector<Ray> rays = rays_through(set.box(), 5000, 3);
+  std::atomic<bool> cancel = false;
+  Execution execution;
+  execution.cancel = &cancel;
+  execution.progress = [&](double) { cancel = true; };
+  HitLists lists;
+  ASSERT_TRUE(scene.all(rays, lists).ok());
+  EXPECT_EQ(scene.all(rays, lists, execution).code(), StatusCode::cancelled);
+  EXPECT_TRUE(lists.hits.empty());
+  EXPECT_TRUE(lists.first.empty());
 }
 
 }  // namespace

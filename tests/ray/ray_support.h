@@ -36,6 +36,12 @@ inline std::vector<Hit> closest(const RayScene& scene, const std::vector<Ray>& r
   return hits;
 }
 
+inline std::vector<Hit> all_hits(const RayScene& scene, const Ray& ray) {
+  HitLists lists;
+  EXPECT_TRUE(scene.all({&ray, 1}, lists).ok());
+  return lists.hits;
+}
+
 inline Vec3 random_direction(Random& random) {
   for (;;) {
     const Vec3 v = uniform_vector(random, -1, 1);

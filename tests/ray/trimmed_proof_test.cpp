@@ -3,16 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "ray_support.h"
 #include "support/trimmed_proof.h"
 
 namespace tessera::test {
 namespace {
-
-std::vector<Hit> all_hits_of(const RayScene& scene, const Ray& ray) {
-  HitLists lists;
-  EXPECT_TRUE(scene.all({&ray, 1}, lists).ok());
-  return lists.hits;
-}
 
 TrimmedTally tally_of(const TrimmedCase& one, int rays, std::uint64_t seed) {
   Random random(seed);
@@ -85,7 +80,7 @@ TEST(TrimmedProof, ARootBeyondABorderIsUnsureBesideALoop) {
   const Ray ray{{0x1.28ee0f85e751cp+1, 0x1.e7fb02767d952p-1, 0x1.0db7aa9396feap+1},
                 {-0x1.3570015a91997p+0, -0x1.50723f896b1c6p-3, -0x1.79ed343cbcea2p+0}};
   const TrimmedCase one = trimmed::tangent_loops().cases.back();
-  const std::vector<Hit> hits = all_hits_of(*one.scene, ray);
+  const std::vector<Hit> hits = all_hits(*one.scene, ray);
   EXPECT_LE(hits.size(), 1u);
   for (const Hit& hit : hits) EXPECT_TRUE(hit.flags.uncertified);
   EXPECT_TRUE(one.scene->closest(ray).kind == HitKind::miss || one.scene->closest(ray).flags.uncertified);
