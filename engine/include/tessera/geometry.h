@@ -63,6 +63,11 @@ struct Box3 {
     extend(b.lower);
     extend(b.upper);
   }
+  /// Whether all of the box b, its faces too, lies in this one. False if a bound is NaN.
+  bool contains(const Box3& b) const {
+    return lower.x <= b.lower.x && lower.y <= b.lower.y && lower.z <= b.lower.z && b.upper.x <= upper.x &&
+           b.upper.y <= upper.y && b.upper.z <= upper.z;
+  }
   Vec3 centre() const { return 0.5 * lower + 0.5 * upper; }  ///< the box must not be empty
   /// The length of the diagonal; 0 for an empty box. It is the "size" of a model.
   double diagonal() const { return empty() ? 0 : length(upper - lower); }

@@ -44,8 +44,11 @@ struct PatchSource {
 /// How a set is made.
 struct PatchSetOptions {
   BlockKinds blocks = {};  ///< at least one kind
-  /// The point that coefficients are relative to; finite. By default the centre of the set's box.
+  /// The point that coefficients are relative to; finite. By default the centre of model_box().
   std::optional<Vec3> origin = {};
+  /// Sets that are parts of a model: the model's box, which replaces the set's own wherever its size or centre matter,
+  /// so that parts are meshed as the model is. It must contain the set's own, also after edits.
+  std::optional<Box3> box = {};
   /// How far the patches lie from the surfaces that they approximate.
   FitError fit_error = {};
   /// The source of each patch, copied. Empty: patch k is surface k on [0,1]^2.
@@ -76,7 +79,8 @@ class PatchSet {
   /// Errors:
   /// - invalid_argument (no patch; index = the patch: a source's domain that is not a finite rectangle)
   /// - count_mismatch (sources that are neither none nor one per patch)
-  /// - non_finite (the origin; index = the patch: numbers out of that range)
+  /// - invalid_argument (a box that does not contain all control points)
+  /// - non_finite (the origin or the box; index = the patch: numbers out of that range)
   /// - out_of_memory
   static Result<PatchSet> make(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
 
@@ -90,6 +94,7 @@ class PatchSet {
   const PatchSource& source(std::size_t index) const;  ///< index < patch_count()
   Vec3 origin() const;                                 ///< the point of the model that float positions are relative to
   Box3 box() const;                                    ///< the box of all control points; reads each of them
+  Box3 model_box() const;                              ///< PatchSetOptions::box; box() if that is empty
   const FitError& fit_error() const;                   ///< PatchSetOptions::fit_error; 0 for patches that are exact
   const BlockKinds& blocks() const;                    ///< PatchSetOptions::blocks
   std::size_t block_count() const;                     ///< blocks of all degrees together

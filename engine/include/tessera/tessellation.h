@@ -64,7 +64,7 @@ struct TessellationOptions {
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// this distance of the other.
   std::optional<double> tolerance = {};
-  /// Whether the tolerance is a share of the diagonal of the set's box, as it is in make(), instead of a length.
+  /// Whether the tolerance is a share of the diagonal of PatchSet::model_box(), in make(), instead of a length.
   bool relative = false;
   /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2.
   ///
@@ -184,8 +184,8 @@ struct MeshChange {
 /// Exceptions:
 ///
 /// - lengths that are shares of the set's size, TessellationOptions::fewest and `smallest`
-/// - where the borders of these patches are moved, by welding or to others of the same float bits: the patches that
-///   they are moved to
+/// - the patches that borders of these are moved to, by welding or to others of the same float bits; the faces behind
+///   the other edges of a face whose chords cross
 /// - with pixels: whole patches beside cut ones, see below
 ///
 /// Vertices: usually sums of floats, in SIMD. If the rounding of these sums takes more than a quarter of the tolerance,
@@ -311,6 +311,8 @@ class Tessellation {
   /// Returns the patches that have no triangles, because their trimming loops could not be made a polygon.
   std::span<const std::uint32_t> crossed_patches() const;
   MeshCapacity capacity() const;  ///< the exact sizes of the mesh
+  /// Returns where a patch's vertices, triangles and quads begin, or all end. Requires share_vertices to be false.
+  MeshCapacity before(std::size_t patch) const;
   /// Returns a mesh of capacity() with all attributes that the plan has. Errors: out_of_memory.
   Result<Mesh> allocate() const;
 

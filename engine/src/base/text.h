@@ -24,6 +24,9 @@ namespace tessera::inline abi_0_1 {
   return '(' + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ')';
 }
 
+/// "(x, y, z) to (x, y, z)".
+[[gnu::cold]] inline std::string text(const Box3& box) { return text(box.lower) + " to " + text(box.upper); }
+
 /// "1 vertex", "2 vertices"; `plural` if an s is not enough.
 [[gnu::cold]] inline std::string counted(std::size_t count, std::string_view noun, std::string_view plural = {}) {
   std::string out = std::to_string(count) + ' ';

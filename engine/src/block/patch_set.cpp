@@ -130,6 +130,16 @@ Status too_large(std::size_t patch) {
                 static_cast<std::ptrdiff_t>(patch));
 }
 
+/// Checks the box of the model that a set with a box of its own is part of.
+Status check_box(const std::optional<Box3>& model, const Box3& own) {
+  if (!model) return {};
+  if (!is_finite(model->lower) || !is_finite(model->upper))
+    return Status(StatusCode::non_finite, "the box of a patch set must be finite, not " + text(*model));
+  if (model->contains(own)) return {};
+  return Status(StatusCode::invalid_argument,
+                "the box that a patch set is given, " + text(*model) + ", must contain its own, " + text(own));
+}
+
 Status check_sources(std::span<const BezierPatch> patches, std::span<const PatchSource> sources) {
   if (sources.size() != patches.size())
     return Status(StatusCode::count_mismatch, "found " + counted(sources.size(), "source") + " for " +
@@ -193,12 +203,15 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->kinds = options.blocks;
   set->fit_error = options.fit_error;
   set->surface_count = surface_count;
-  if (options.origin) {
+  set->given_box = options.box;
+  if (options.origin && !options.box) {
     set->origin = *options.origin;
   } else {
     const Result<Box3> known = box ? *box : box_of(set->patches);
     if (!known) return known.status();
-    set->origin = known->centre() + Vec3{};  // a zero's sign would depend on the order of the patches
+    if (Status status = check_box(options.box, *known); !status.ok()) return status;
+    // A zero's sign would depend on the order of the patches.
+    set->origin = options.origin ? *options.origin : (options.box ? *options.box : *known).centre() + Vec3{};
   }
   set->collapsed.resize(set->patches.size());
   set->edited.resize(set->patches.size());
@@ -234,6 +247,7 @@ const BezierPatch& PatchSet::patch(std::size_t index) const { return impl_->patc
 const PatchSource& PatchSet::source(std::size_t index) const { return impl_->sources[index]; }
 Vec3 PatchSet::origin() const { return impl_->origin; }
 Box3 PatchSet::box() const { return impl_->box(); }
+Box3 PatchSet::model_box() const { return impl_->model_box(); }
 const FitError& PatchSet::fit_error() const { return impl_->fit_error; }
 const BlockKinds& PatchSet::blocks() const { return impl_->kinds; }
 std::size_t PatchSet::block_count() const { return impl_->lane_counts.size(); }

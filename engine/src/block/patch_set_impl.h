@@ -79,6 +79,7 @@ class PatchSet::Impl {
   BlockKinds kinds;
   FitError fit_error;
   Vec3 origin;
+  std::optional<Box3> given_box;  ///< PatchSetOptions::box
   std::size_t surface_count = 0;
   std::shared_ptr<const PatchTrims> trims;  ///< null if no patch is cut
   std::shared_ptr<const PatchEdges> edges;  ///< null if no face names edges
@@ -104,6 +105,7 @@ class PatchSet::Impl {
     }
   }
   TESSERA_INTERNAL_EXPORT Box3 box() const;
+  TESSERA_INTERNAL_EXPORT Box3 model_box() const { return given_box ? *given_box : box(); }
   bool has(Precision precision, Representation representation) const {
     const bool bernstein = representation == Representation::bernstein;
     if (precision == Precision::single_precision) return bernstein ? kinds.float_bernstein : kinds.float_power;

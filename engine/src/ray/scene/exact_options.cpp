@@ -6,17 +6,6 @@
 #include "base/text.h"
 
 namespace tessera::inline abi_0_1 {
-namespace {
-
-/// Written so that NaN fails.
-bool holds(const Box3& box, const Box3& inside) {
-  const Vec3 &a = box.lower, &b = inside.lower, &c = inside.upper, &d = box.upper;
-  return a.x <= b.x && a.y <= b.y && a.z <= b.z && c.x <= d.x && c.y <= d.y && c.z <= d.z;
-}
-
-std::string text_of(const Box3& box) { return text(box.lower) + " to " + text(box.upper); }
-
-}  // namespace
 
 Status check_exact(const RaySceneOptions& options) {
   if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
@@ -38,9 +27,9 @@ Status check_exact(const RaySceneOptions& options) {
 
 Result<Box3> frame_box(const RaySceneOptions& options, const Box3& box) {
   if (!options.box) return box;
-  if (!holds(*options.box, box))
-    return Status(StatusCode::invalid_argument, "the box of the ray scene, " + text_of(*options.box) +
-                                                    ", must contain that of the patch set, " + text_of(box));
+  if (!options.box->contains(box))
+    return Status(StatusCode::invalid_argument, "the box of the ray scene, " + text(*options.box) +
+                                                    ", must contain that of the patch set, " + text(box));
   return *options.box;
 }
 

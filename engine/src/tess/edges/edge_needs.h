@@ -46,8 +46,11 @@ class PieceNeeds {
       leading_ = is_above ? along : Segments();
     }
   }
+  bool empty() const { return needs_[0].numerator == 0; }  ///< whether no patch with an area has needs
+  /// Whether uniform segments have all of the rates, and no more.
+  bool is_uniform() const { return empty() || (leading_.rate() > 0 && leading_.is_uniform()); }
   Segments segments(bool against, std::uint16_t is_even) const {
-    if (needs_[0].numerator == 0) return 1;  // no patch with an area
+    if (empty()) return 1;
     const bool is_known = leading_.rate() > 0 && (is_even == 0 || leading_.parts_halves());
     Segments along = leading_;
     if (!is_known) {

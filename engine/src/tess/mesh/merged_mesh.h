@@ -20,6 +20,7 @@ class MergedMesh final : public Tessellation::Impl {
 
   Proof proof() const override { return own_->proof(); }
   MeshCapacity capacity() const override;
+  MeshCapacity before(std::size_t) const override { return {}; }  // patches have no vertices of their own
   Mesh allocate() const override;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,

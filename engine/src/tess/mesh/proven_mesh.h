@@ -32,7 +32,11 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   double tolerance() const { return tolerance_; }  ///< the distance to keep, infinite if there is no limit
 
   Proof proof() const override;
-  MeshCapacity capacity() const override { return options_.quads ? plan_.quad_capacity() : plan_.capacity(); }
+  MeshCapacity capacity() const override { return before(plan_.patch_count()); }
+  MeshCapacity before(std::size_t patch) const override {
+    if (!options_.quads) return {plan_.first_vertex(patch), plan_.first_triangle(patch), 0};
+    return {plan_.first_vertex(patch), plan_.first_strip(patch), plan_.first_quad(patch)};
+  }
   Mesh allocate() const override;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
   Result<MeshChange> update(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution)

@@ -65,6 +65,7 @@ std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_
 std::size_t Tessellation::open_edges() const { return impl_->proof().open_edges; }
 std::span<const std::uint32_t> Tessellation::crossed_patches() const { return impl_->proof().crossed; }
 MeshCapacity Tessellation::capacity() const { return impl_->capacity(); }
+MeshCapacity Tessellation::before(std::size_t patch) const { return impl_->before(patch); }
 
 Result<Mesh> Tessellation::allocate() const {
   return guarded([&]() -> Result<Mesh> { return impl_->allocate(); });

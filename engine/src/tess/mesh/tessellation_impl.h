@@ -30,6 +30,7 @@ class Tessellation::Impl {
 
   virtual Proof proof() const { return {}; }
   virtual MeshCapacity capacity() const = 0;
+  virtual MeshCapacity before(std::size_t patch) const = 0;
   virtual Mesh allocate() const = 0;
   virtual Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const = 0;
   virtual Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,

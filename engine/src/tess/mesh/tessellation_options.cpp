@@ -19,6 +19,7 @@ constexpr double max_weld = 0.05;  // a share of the model's size
 /// Returns a weld, or the largest one of a set if that is less. Looks at no more patches than it takes to tell.
 double at_most_max_weld(double weld, const PatchSet& set) {
   Box3 box;
+  if (const std::optional<Box3>& given = impl_of(set).given_box) return std::min(weld, max_weld * given->diagonal());
   for (const BezierPatch& patch : impl_of(set).patches) {
     box.extend(patch.hull_box());
     if (max_weld * box.diagonal() >= weld) return weld;
@@ -34,7 +35,7 @@ Status check_joining(const TessellationOptions& options, const PatchSet& set) {
     return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
   if (weld > 0 && weld > at_most_max_weld(weld, set))
     return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " +
-               text(set.box().diagonal()));
+               text(set.model_box().diagonal()));
   if (options.max_gap && !(*options.max_gap >= 0))
     return bad("the largest gap is " + text(*options.max_gap) + ", it must be at least 0");
   return {};
@@ -69,7 +70,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   } else if (options.tolerance && !options.relative) {
     planner.weld = {at_most_max_weld(*options.tolerance / 8, set), true};
   } else {
-    const double size = set.box().diagonal();
+    const double size = set.model_box().diagonal();
     planner.weld = {options.tolerance ? std::min(*options.tolerance * size / 8, max_weld * size) : 1e-6 * size, true};
   }
   planner.angle = options.angle;
@@ -88,7 +89,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
 
 Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set) {
   double tolerance = std::numeric_limits<double>::infinity();
-  if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.box().diagonal() : 1);
+  if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.model_box().diagonal() : 1);
   if (tolerance > 0 || !(options.tolerance > 0.0)) return tolerance;  // planner_options() tells of others
   return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
 }

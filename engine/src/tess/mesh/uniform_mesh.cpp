@@ -71,9 +71,9 @@ class UniformMesh final : public Tessellation::Impl {
     (void)lay_out(impl_of(set));
   }
 
-  MeshCapacity capacity() const override {
-    const std::size_t patches = shapes_.size();
-    return {patches * rates_.vertices(), lone_triangle(patches), quads_ ? first_quad_[patches] : 0};
+  MeshCapacity capacity() const override { return before(shapes_.size()); }
+  MeshCapacity before(std::size_t patch) const override {
+    return {patch * rates_.vertices(), lone_triangle(patch), quads_ ? first_quad_[patch] : 0};
   }
 
   Mesh allocate() const override { return empty_mesh(capacity(), origin_); }

@@ -108,7 +108,8 @@ void CertifiedPlanner::find_weld() {
   rules.f64_patches = options_.f64_patches;
   if (options_.f64_positions) {
     // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
-    rules.reach = std::max(rules.reach, 0x1p-50 * std::max(max_abs(set_->box().lower), max_abs(set_->box().upper)));
+    const Box3 box = set_->model_box();
+    rules.reach = std::max(rules.reach, 0x1p-50 * std::max(max_abs(box.lower), max_abs(box.upper)));
     edges_ = parted_by_doubles(*set_, edges_);
   }
   if (!(rules.reach > 0) && rules.f64_patches.empty()) return;

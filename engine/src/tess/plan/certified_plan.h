@@ -65,7 +65,6 @@ class CertifiedPlan {
   /// In a mesh with quads, cells between inner points are quads, and first_strip() counts triangles without theirs.
   std::size_t first_quad(std::size_t patch) const { return first_quad_[patch]; }
   std::size_t first_strip(std::size_t patch) const { return first_triangle_[patch] - 2 * first_quad_[patch]; }
-  MeshCapacity quad_capacity() const { return {first_vertex_.back(), first_strip(patch_count()), first_quad_.back()}; }
   std::span<const float> bounds() const { return bounds_; }
   std::span<const float> angles() const { return angles_; }  ///< empty if no angle was set
   std::span<const float> pixels() const { return pixels_; }  ///< empty if no pixels were set
@@ -209,7 +208,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< for tolerances that messages propose
     double share = 1;      ///< the part of what the limits leave that cells may take
     bool uniform = false;  ///< whether segments are of one length
-    double cut_share = 1;  ///< the part of the tolerance that cut patches may take before edges are closed
+    /// By cut patch: the part of the tolerance that it may take before edges are closed; empty: all of it.
+    std::span<const double> cut_shares = {};
   };
   /// Makes a plan without a limit on its triangles.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
@@ -275,7 +275,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   bool is_cut(std::size_t patch) const { return set_->trims && set_->trims->is_cut[patch]; }
   /// Finds the sides of faces that loops cut, and keeps their patches from being divided as whole ones.
   void find_cut_faces();
-  CutRoom room_of(const CutPatch& cut, const Request& request, const CertifiedPlan& plan) const;
+  /// `share`: the part of the tolerance that the patch may take.
+  CutRoom room_of(const CutPatch& cut, double share, const Request& request, const CertifiedPlan& plan) const;
   /// Returns the rooms of all cut patches, as patches are divided now. Errors: cancelled.
   Result<std::vector<CutRoom>> find_rooms(const Request& request, const CertifiedPlan& plan, const Execution& execution)
       const;
@@ -304,8 +305,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   void find_same_borders(CertifiedPlan & plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
-  double straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
-                             const CertifiedPlan& plan) const;
+  double straddling_distance(std::size_t patch, Side side, const CertifiedPlan& plan) const;
   /// Returns for each border whether it runs against the leading border of its edge.
   std::vector<std::uint8_t> borders_against() const;
   /// The shapes by which patches are divided and welded: cut ones have no area.

@@ -34,15 +34,18 @@ Status CertifiedPlanner::find_stops(std::span<const CutRoom> rooms, const Certif
 
 // An edge is rarely longer than a few diagonals of the set, so vertices move by a small part of the tolerance.
 double CertifiedPlanner::same_share(const Request& request) const {
-  return std::clamp(0.05 * request.tolerance / set_->box().diagonal(), least_same_share, largest_same_share);
+  return std::clamp(0.05 * request.tolerance / set_->model_box().diagonal(), least_same_share, largest_same_share);
 }
 
-// Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then patches
-// are cut anew for less.
+// Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then these
+// patches are cut anew for less.
 Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   constexpr int max_attempts = 6;
+  std::vector<double> shares(set_->trims ? set_->trims->cuts.size() : 0, 1);
   Request cut = request;
+  cut.cut_shares = shares;
   std::optional<EdgeStops> stops;
+  std::size_t worst = 0;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (set_->trims)
       if (Status status = divide_and_cut(cut, plan, stops, execution); !status.ok()) return status;
@@ -53,19 +56,22 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
         execution.cancel);
     if (!made) return made.status();
     const ClosedEdges& closed = plan.rare_->closed.emplace(*std::move(made));
-    double excess = 0;
+    bool keeps = true;
     for (const std::uint32_t c : closed.edited_cuts) {
       CutPatch& edited = plan.rare_->cuts[c];
-      excess = std::max(excess, bound_cut(room_of(edited, request, plan), edited, plan));
+      const double excess = bound_cut(room_of(edited, 1, request, plan), edited, plan);
+      if (excess <= 1) continue;
+      keeps = false;
+      worst = edited.patch;
+      shares[c] *= 0.95 / excess;
     }
-    if (excess <= 1) {
+    if (keeps) {
       plan.open_edges_ = static_cast<std::uint32_t>(
           std::max(std::int64_t{0}, std::int64_t{plan.open_edges_} - closed.closed_segments));
       return {};
     }
-    cut.cut_share *= 0.95 / excess;
   }
-  return too_rough(request, plan.rare_->cuts[plan.rare_->closed->edited_cuts.front()].patch);
+  return too_rough(request, worst);
 }
 
 void CertifiedPlanner::find_edges_in_step() {

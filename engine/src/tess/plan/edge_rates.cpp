@@ -38,14 +38,12 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
   return against;
 }
 
-double CertifiedPlanner::straddling_distance(std::size_t patch, Side side, const std::array<Segments, 4>& borders,
-                                             const CertifiedPlan& plan) const {
-  // If no inner points lie between them, a segment of the opposite border may cross the middle as well.
-  const auto s = static_cast<std::size_t>(side);
-  const Segments border = borders[s], opposite = borders[(s + 2) % 4];
-  const int rate =
-      opposite.parts_halves() ? border.coarsest_rate() : std::min(border.coarsest_rate(), opposite.coarsest_rate());
+double CertifiedPlanner::straddling_distance(std::size_t patch, Side side, const CertifiedPlan& plan) const {
+  // The border is odd, and has more segments than the patch needs. If no inner points lie between them, a segment of the
+  // opposite border may cross the middle as well: then that is odd too. By the real rates there the division of a patch
+  // would depend on patches that it does not touch.
   assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
+  const int rate = along(plan.segments_[patch], side).rate() + 1;
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
   const PatchSet::Slot slot = set_->slots[patch];
   return chords_.piece(slot.block, slot.lane, piece).chord(rates) + (roundings_[patch] + fit_error_);
@@ -77,19 +75,24 @@ class BorderSegments {
         if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && has_needs_[k])
           pieces_[edge].add(along(segments_[k], side), is_against(k, side));
   }
-  /// Gives the edges of each group the needs of all of them. Only for uniform segments.
+  /// Gives the edges of each group the needs of all of them, where these are uniform. Other groups keep their own:
+  /// their patches decide, not those elsewhere.
   void share(std::span<const std::vector<std::uint32_t>> groups) {
     groups_ = groups;
     share();
   }
   void share() {
     for (const std::vector<std::uint32_t>& group : groups_) {
+      if (!std::ranges::all_of(group, [this](std::uint32_t edge) { return is_uniform(edge); })) continue;
       EdgeNeeds all;
       for (const std::uint32_t edge : group) {
         all.most = std::max(all.most, needs_[edge].most);
         all.is_even |= needs_[edge].is_even;
       }
-      for (const std::uint32_t edge : group) needs_[edge].most = all.most, needs_[edge].is_even = all.is_even;
+      for (const std::uint32_t edge : group) {
+        needs_[edge].most = all.most, needs_[edge].is_even = all.is_even;
+        if (!pieces_.empty() && !pieces_[edge].empty()) pieces_[edge].add(all.most, false);
+      }
     }
   }
   /// Whether a patch has an even rate along a border that other patches may share.
@@ -119,6 +122,7 @@ class BorderSegments {
   }
 
  private:
+  bool is_uniform(std::uint32_t edge) const { return pieces_.empty() || pieces_[edge].is_uniform(); }
   bool is_against(std::size_t patch, Side side) const { return against_[4 * patch + static_cast<std::size_t>(side)]; }
   Segments border(std::size_t patch, Side side) const {
     const std::uint32_t edge = edges_.edge(patch, side);
@@ -185,19 +189,15 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
       borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_straddles(k)));
     are_uniform &= segments[k].are_uniform();
   }
-  if (are_uniform) {
-    borders.share(edges_in_step_);
-  } else {
-    borders.part(borders_against());
-  }
+  if (!are_uniform) borders.part(borders_against());
+  borders.share(edges_in_step_);
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
       for (const Side side : all_sides) {
         if (!borders.is_even_edge(k, side)) continue;
-        const std::array<Segments, 4> around = borders.of(k);
-        if (!around[static_cast<std::size_t>(side)].parts_halves())
-          visit(k, side, straddling_distance(k, side, around, plan));
+        if (!borders.of(k)[static_cast<std::size_t>(side)].parts_halves())
+          visit(k, side, straddling_distance(k, side, plan));
       }
     }
   };

@@ -46,7 +46,7 @@ Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles,
     high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
   }
   high = std::max(high, 1.001 * low);
-  if (set_->trims) high = std::max(high, set_->box().diagonal());  // loops need segments of their own
+  if (set_->trims) high = std::max(high, set_->model_box().diagonal());  // loops need segments of their own
   if (Result<CertifiedPlan> plan = this->plan(high, max_triangles, execution); !plan) return plan.status();
 
   const auto fit = [&](int step) -> Result<Fit> {

@@ -47,7 +47,7 @@ void CertifiedPlanner::find_cut_faces() {
   for (const PatchTrims::Cut& cut : set_->trims->cuts) cut_faces_.push_back(faces[cut.patch]);
 }
 
-CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const Request& request,
+CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, double share, const Request& request,
                                                     const CertifiedPlan& plan) const {
   const std::size_t patch = cut.patch;
   CutRoom room;
@@ -57,7 +57,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, const R
   room.given = roundings_[patch] + 0x1p-51 * (room.limits.speed.u + room.limits.speed.v) + fit_error_;
   for (const CutPatch::SameBorder& same : cut.same)
     if (same.border != CutPatch::none) room.given = std::max(room.given, roundings_[same.border / 4] + fit_error_);
-  room.tolerance = request.cut_share * request.tolerance;
+  room.tolerance = share * request.tolerance;
   double sliver = std::numeric_limits<double>::infinity();
   if (options_.camera) {
     const ScreenSpaceBound& picture = pictures_[patch];
@@ -85,7 +85,8 @@ Result<std::vector<CertifiedPlanner::CutRoom>> CertifiedPlanner::find_rooms(cons
                                                                             const Execution& execution) const {
   std::vector<CutRoom> rooms(plan.cuts().size());
   const auto find = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) rooms[c] = room_of(plan.cuts()[c], request, plan);
+    for (std::size_t c = begin; c < end; ++c)
+      rooms[c] = room_of(plan.cuts()[c], request.cut_shares.empty() ? 1 : request.cut_shares[c], request, plan);
   };
   Status status = parallel_for(rooms.size(), rooms_per_task, {.cancel = execution.cancel}, find);
   if (!status.ok()) return status;
@@ -182,7 +183,8 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   for (std::size_t c = 0; c < cuts.size(); ++c) plan.rare_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
   const std::vector<std::uint8_t> is_shared = shared_edges();
-  std::vector<double> shares(cuts.size(), cell_share * request.cut_share), excess(cuts.size(), 2);
+  std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
+  for (std::size_t c = 0; c < request.cut_shares.size(); ++c) shares[c] *= request.cut_shares[c];
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
     const std::vector<Division> before = std::exchange(plan.divisions_, {});

@@ -1,0 +1,67 @@
+#include "block/box_tree.h"
+
+#include <algorithm>
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+double along(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+int longest_axis(const Box3& box) {
+  const Vec3 size = box.upper - box.lower;
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+Box3 grown(const Box3& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
+
+bool meet(const Box3& a, const Box3& b) {
+  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
+         a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(std::span<const Box3> boxes) {
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t k = 0; k < boxes.size(); ++k)
+    if (!boxes[k].empty()) order.push_back(k);
+  nodes_.reserve(2 * order.size() + 1);
+  if (order.empty())
+    nodes_.push_back({{}, 1});
+  else
+    add(boxes, order);
+}
+
+void BoxTree::add(std::span<const Box3> boxes, std::span<std::uint32_t> order) {
+  const std::size_t own = nodes_.size();
+  Node node;
+  Box3 centres;
+  for (const std::uint32_t k : order) node.box.extend(boxes[k]), centres.extend(boxes[k].centre());
+  nodes_.push_back(node);
+  if (order.size() > 1) {
+    const int axis = longest_axis(centres);
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    std::nth_element(order.begin(), middle, order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return along(boxes[a].centre(), axis) < along(boxes[b].centre(), axis);
+    });
+    add(boxes, {order.begin(), middle});
+    add(boxes, {middle, order.end()});
+  }
+  nodes_[own].skip = nodes_.size();
+}
+
+bool BoxTree::touches(const Box3& box, double reach) const {
+  if (box.empty()) return false;
+  const Box3 wanted = grown(box, reach);
+  for (std::size_t k = 0; k < nodes_.size();) {
+    if (!meet(nodes_[k].box, wanted)) {
+      k = nodes_[k].skip;
+      continue;
+    }
+    if (nodes_[k].skip == k + 1) return true;
+    ++k;
+  }
+  return false;
+}
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,31 @@
+#pragma once
+// Which boxes touch any of a set of boxes.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tessera/geometry.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// A tree over boxes. Empty boxes touch nothing. Memory: 56 bytes per box.
+class BoxTree {
+ public:
+  explicit BoxTree(std::span<const Box3> boxes);
+  /// Whether a box, grown by `reach` to all sides, has a point in common with one of the tree's.
+  bool touches(const Box3& box, double reach) const;
+  const Box3& box() const { return nodes_.front().box; }  ///< of all; empty if there are none
+
+ private:
+  /// A node's first child follows it; `skip` is the node behind its last one.
+  struct Node {
+    Box3 box;
+    std::size_t skip = 0;
+  };
+  void add(std::span<const Box3> boxes, std::span<std::uint32_t> order);
+
+  std::vector<Node> nodes_;  ///< in depth-first order; the leaves are boxes
+};
+
+}  // namespace tessera::inline abi_0_1

@@ -1,0 +1,96 @@
+#pragma once
+// Gathers the patches of a model's surfaces for one set, as trimming loops cut them.
+
+#include <memory>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "block/patch_edges.h"
+#include "block/patch_set_impl.h"
+#include "block/patch_trims.h"
+#include "tessera/model.h"
+#include "trim/trim_region_impl.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// What the loops of a face keep.
+struct FaceTrims {
+  TrimRegion region;
+  std::vector<PatchUse> uses;               ///< by patch_uses(); empty if the face is whole
+  std::optional<std::uint32_t> index = {};  ///< into PatchTrims::regions
+};
+
+/// Finds the trims of faces. Faces of equal loops over equal grids share them, as instances of a part do.
+class FaceTrimsFinder {
+ public:
+  /// Returns the trims of the next face, to stay until the next call.
+  Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid, bool is_loose);
+
+ private:
+  struct Known {
+    Shared<std::vector<TrimLoop>> loops;
+    TrimOptions options;
+    FaceTrims trims;
+
+    bool is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid, const TrimOptions& other) const;
+  };
+
+  std::unordered_multimap<double, Known> known_;
+  CurveExtractions extractions_;
+};
+
+/// The patches of one surface after the other, and the source of each patch.
+struct GatheredPatches {
+  std::vector<BezierPatch> patches;
+  std::vector<PatchSource> sources;
+  std::size_t surface_count = 0;
+  Box3 box;
+  FitError fit_error;
+  PatchTrims trims;
+
+  void add(std::size_t surface, PatchGrid grid);
+  /// Adds what a face keeps of its patches.
+  void add_kept(std::size_t surface, const PatchGrid& grid, FaceTrims& face);
+  void note_error(const FitError& error);
+  Result<PatchSet> packed(PatchSetOptions options) &&;
+};
+
+/// Gathers the patches of a model's surfaces one by one.
+class ModelPatches {
+ public:
+  /// The model must outlive this object. `options`: those of the set.
+  ModelPatches(const Model& model, const PatchSetOptions& options) : model_(model), options_(options) {}
+
+  /// States that the surfaces from `first` on are the faces of a shape, which must outlive this object.
+  void name_edges(const Shape& shape, std::size_t first);
+  /// Does so for all instances of the model.
+  void name_edges();
+  /// Adds the next surface's patches.
+  Status add(PatchGrid grid);
+  /// Converts all surfaces of the model and adds their patches.
+  Status add_all(const FitOptions& fit);
+  const GatheredPatches& gathered() const { return all_; }
+  Result<PatchSet> packed() &&;
+
+ private:
+  struct NamedFace {
+    const ShapeFace* face = nullptr;
+    std::uint32_t first_edge = 0;
+  };
+
+  /// Notes the patches of a face whose loops name edges. `first`: its first patch.
+  void add_edges(std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops, const FaceTrims& trims,
+                 std::size_t first, std::size_t places);
+
+  const Model& model_;
+  const PatchSetOptions options_;
+  GatheredPatches all_;
+  FaceTrimsFinder trims_;
+  std::vector<NamedFace> faces_;  ///< by surface, as far as there are any
+  PatchEdges edges_;
+  std::vector<Status> faults_;
+  std::vector<std::size_t> ends_;  ///< the end of each surface's patches
+};
+
+}  // namespace tessera::inline abi_0_1
