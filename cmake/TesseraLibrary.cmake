@@ -20,14 +20,14 @@ function(tessera_shared_settings target)
   endif()
 endfunction()
 
-# tessera_library(NAME OBJECTS ... [ON library] PUBLIC ... PRIVATE ...)
+# tessera_library(NAME OBJECTS ... [ON libraries] PUBLIC ... PRIVATE ...)
 #
 # Makes the target tessera, or tessera_NAME_library, with two names:
-# - tessera::NAME for users. BUILD_SHARED_LIBS says whether it is static or shared. It links Tessera's library ON.
+# - tessera::NAME for users. BUILD_SHARED_LIBS says whether it is static or shared. It links Tessera's libraries ON.
 # - tessera_internal::NAME for the project's own programs, which use internal functions too: the same library if that is
 #   static, otherwise a static one of the same objects.
 function(tessera_library name)
-  cmake_parse_arguments(LIBRARY "" "ON" "OBJECTS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(LIBRARY "" "" "ON;OBJECTS;PUBLIC;PRIVATE" ${ARGN})
   set(target tessera)
   if(NOT name STREQUAL "tessera")
     set(target tessera_${name}_library)
@@ -51,11 +51,12 @@ function(tessera_library name)
       set_target_properties(${twin} PROPERTIES OUTPUT_NAME ${output})
     endif()
     target_link_libraries(${twin} PUBLIC ${LIBRARY_PUBLIC} PRIVATE ${LIBRARY_PRIVATE} $<BUILD_INTERFACE:tessera_compile>)
-    if(LIBRARY_ON AND twin MATCHES "_internal$")
-      target_link_libraries(${twin} PUBLIC ${LIBRARY_ON}_internal)
-    elseif(LIBRARY_ON)
-      target_link_libraries(${twin} PUBLIC ${LIBRARY_ON})
-    endif()
+    foreach(below IN LISTS LIBRARY_ON)
+      if(twin MATCHES "_internal$")
+        set(below ${below}_internal)
+      endif()
+      target_link_libraries(${twin} PUBLIC ${below})
+    endforeach()
   endforeach()
 endfunction()
 

@@ -9,11 +9,13 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 19> internal_export{
+constexpr std::array<std::string_view, 21> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
     "tessera::allocate_aligned",
+    "tessera::arena_threads",
+    "tessera::in_own_arena",
     "tessera::parallel_for",
     "tessera::ray_kernels",
     "tessera::UniformGrid::make",

@@ -23,6 +23,7 @@
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
+#include "tessera/model_part.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 #include "tessera/patch_set.h"
@@ -37,7 +38,7 @@
 #include "tessera/trim_region.h"
 #include "tessera/version.h"
 
-// Headers of the libraries tessera::ray and tessera::io are installed with these.
+// Headers of the libraries tessera::ray, tessera::io and tessera::parts are installed with these.
 #if __has_include("tessera/ray_scene.h")
 #include "tessera/ray_hit.h"
 #include "tessera/ray_scene.h"
@@ -46,4 +47,8 @@
 #include "tessera/cad.h"
 #include "tessera/files.h"
 #include "tessera/io.h"
+#endif
+#if __has_include("tessera/transport.h")
+#include "tessera/part_mesh.h"
+#include "tessera/transport.h"
 #endif

@@ -1,0 +1,124 @@
+#include "tessera/part_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "base/text.h"
+#include "tessera/guard.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+Status check_local(const TessellationOptions& options) {
+  const auto refused = [](const char* what) {
+    return Status(StatusCode::unsupported, std::string(what) +
+                                               " is not for models in parts: it decides for the whole "
+                                               "mesh");
+  };
+  if (options.share_vertices) return refused("share_vertices");
+  if (options.crease_angle) return refused("a crease angle");
+  if (options.smallest) return refused("the smallest tolerance");
+  if (options.fewest) return refused("a search for the fewest triangles");
+  return {};
+}
+
+/// The patches of a part's wanted surfaces in its set.
+struct OwnPatches {
+  std::size_t first = 0, end = 0;
+};
+
+OwnPatches own_patches(const ModelPart& part, const PatchSet& set) {
+  OwnPatches own;
+  while (own.first < set.patch_count() && set.source(own.first).surface < part.first) ++own.first;
+  own.end = own.first;
+  while (own.end < set.patch_count() && set.source(own.end).surface < part.end) ++own.end;
+  return own;
+}
+
+template <class T>
+void keep(std::vector<T>& values, std::size_t begin, std::size_t end) {
+  if (values.empty()) return;
+  values.resize(end);
+  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
+}
+
+/// Leaves of a mesh only what some patches have, from `begin` until `end`.
+void keep_patches(Mesh& mesh, std::size_t first_patch, const MeshCapacity& begin, const MeshCapacity& end) {
+  keep(mesh.positions, 3 * begin.vertices, 3 * end.vertices);
+  keep(mesh.positions_f64, 3 * begin.vertices, 3 * end.vertices);
+  keep(mesh.normals, 3 * begin.vertices, 3 * end.vertices);
+  keep(mesh.parameters, 2 * begin.vertices, 2 * end.vertices);
+  keep(mesh.patches, begin.triangles, end.triangles);
+  keep(mesh.indices, 3 * begin.triangles, 3 * end.triangles);
+  keep(mesh.quads, 4 * begin.quads, 4 * end.quads);
+  keep(mesh.quad_patches, begin.quads, end.quads);
+  const auto lower = [](std::vector<std::uint32_t>& values, std::size_t by) {
+    for (std::uint32_t& value : values) value -= static_cast<std::uint32_t>(by);
+  };
+  lower(mesh.indices, begin.vertices), lower(mesh.quads, begin.vertices);
+  lower(mesh.patches, first_patch), lower(mesh.quad_patches, first_patch);
+}
+
+float largest(std::span<const float> values) { return values.empty() ? 0 : *std::ranges::max_element(values); }
+
+Status check_total(const PartCounts& all, const TessellationOptions& options) {
+  const std::uint64_t triangles = all.triangles + 2 * all.quads;
+  if (options.rates || triangles <= options.max_triangles) return {};
+  return Status(StatusCode::invalid_argument, "the mesh of all parts takes " + counted(triangles, "triangle") +
+                                                  ", more than the limit of " + std::to_string(options.max_triangles));
+}
+
+}  // namespace
+
+double part_reach(const TessellationOptions& options, const Box3& box) {
+  constexpr double links = 4, most = 0.05, share = 1e-6;  // the most that a weld may be, and its default, of the size
+  const double size = box.diagonal();
+  if (options.rates) return 0;
+  if (options.weld) return links * std::min(*options.weld, most * size);
+  if (!options.tolerance) return links * share * size;
+  return links * std::min(*options.tolerance * (options.relative ? size : 1) / 8, most * size);
+}
+
+Result<PartMesh> tessellate_part(const ModelPart& part, const TessellationOptions& options, const Execution& execution,
+                                 const FitOptions& fit) {
+  return guarded([&]() -> Result<PartMesh> {
+    if (Status status = check_local(options); !status.ok()) return status;
+    PartMesh made;
+    made.mesh.origin = part.box.centre() + Vec3{};
+    if (part.own_box.empty()) return made;
+    const Result<PatchSet> set = make_patch_set(part.model, {.box = part.box, .fit_error = part.fit_error}, fit);
+    if (!set) return set.status();
+    const Result<Tessellation> plan = Tessellation::make(*set, options, execution);
+    if (!plan) return plan.status();
+    Result<Mesh> mesh = plan->allocate();
+    if (!mesh) return mesh.status();
+    made.mesh = *std::move(mesh);
+    if (Status status = plan->run(*set, made.mesh.views(), execution); !status.ok()) return status;
+    const auto [first, end] = own_patches(part, *set);
+    keep_patches(made.mesh, first, plan->before(first), plan->before(end));
+    made.own = {end - first, made.mesh.vertex_count(), made.mesh.triangle_count(), made.mesh.quad_count()};
+    made.bound = options.rates ? plan->bound() : double{largest(plan->bounds().subspan(first, end - first))};
+    made.gap = plan->gap(), made.certified = plan->certified();
+    return made;
+  });
+}
+
+Result<PartSums> sum_parts(const Result<PartMesh>& own, const TessellationOptions& options, Transport& transport) {
+  return guarded([&]() -> Result<PartSums> {
+    if (Status status = transport.agree(own.status()); !status.ok()) return status;
+    std::array<std::uint64_t, 4> counts{own->own.patches, own->own.vertices, own->own.triangles, own->own.quads};
+    const Result<std::vector<std::uint64_t>> all = transport.prefix_sum(counts);
+    if (!all) return all.status();
+    PartSums sums;
+    sums.before = {counts[0], counts[1], counts[2], counts[3]};
+    sums.all = {(*all)[0], (*all)[1], (*all)[2], (*all)[3]};
+    if (Status status = check_total(sums.all, options); !status.ok()) return status;
+    std::array<double, 3> most{own->bound, own->gap, own->certified ? 0.0 : 1.0};
+    if (Status status = transport.reduce_max(most); !status.ok()) return status;
+    sums.bound = most[0], sums.gap = most[1], sums.certified = most[2] == 0;
+    return sums;
+  });
+}
+
+}  // namespace tessera::inline abi_0_1
