@@ -3,6 +3,7 @@
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
 #   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone, and ray_embree.h); 4 will do
 #   OpenCASCADE       libocct-data-exchange-dev 7.6  tessera-cad-reader (engine/src/io_occt alone); optional
+#   Open MPI          libopenmpi-dev 4.1, openmpi-bin  tessera::mpi (engine/src/mpi alone, and mpi.h), tessera_mpi; optional
 #   CLI11             libcli11-dev 2.1            the command line
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
 #                                               the command line: --json; tests: values of peers
@@ -69,6 +70,18 @@ if(TESSERA_BUILD_IO AND TESSERA_BUILD_CAD_READER)
   elseif(NOT TESSERA_HAS_CAD_READER)
     message(FATAL_ERROR "TESSERA_BUILD_CAD_READER is ON, but OpenCASCADE 7.5 or later with its data exchange is not found. "
       "On Debian it is libocct-data-exchange-dev.")
+  endif()
+endif()
+# Whether tessera::mpi is built.
+set(TESSERA_HAS_MPI OFF)
+if(TESSERA_BUILD_PARTS AND TESSERA_BUILD_MPI)
+  set(MPI_CXX_SKIP_MPICXX ON)  # no interface for C++ before MPI 3
+  find_package(MPI 3 QUIET COMPONENTS CXX)
+  set(TESSERA_HAS_MPI ${MPI_CXX_FOUND})
+  if(NOT TESSERA_HAS_MPI AND TESSERA_BUILD_MPI STREQUAL "AUTO")
+    message(STATUS "tessera::mpi and tessera_mpi are left out: MPI is not found (tools/setup.sh --for mpi)")
+  elseif(NOT TESSERA_HAS_MPI)
+    message(FATAL_ERROR "TESSERA_BUILD_MPI is ON, but MPI 3 or later is not found. On Debian it is libopenmpi-dev.")
   endif()
 endif()
 if(TESSERA_BUILD_TOOLS)
