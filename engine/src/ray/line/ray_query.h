@@ -82,12 +82,6 @@ inline double min_normal(double x) {
   return std::bit_cast<std::uint64_t>(x) - 1 < std::bit_cast<std::uint64_t>(least) - 1 ? least : x;
 }
 
-/// Orders roots along the line. A point that patches or pieces share is that of the first of them, whichever was
-/// searched first.
-inline bool comes_before(const LeafRoot& a, const LeafRoot& b) {
-  return a.s < b.s || (a.s == b.s && std::tie(a.patch, a.u, a.v) < std::tie(b.patch, b.u, b.v));
-}
-
 /// Tells on which side of the loops of its face a root lies: see leaf_trims.h.
 class RootSides {
  public:
@@ -130,6 +124,7 @@ struct RayQuery {
   bool incomplete = false;             ///< a limit of work was reached: there may be more roots
   bool overflow = false;               ///< memory for more roots ran out
   LeafRoot best;                       ///< if found
+  double best_t = 0;                   ///< its t
   std::vector<LeafRoot> roots;         ///< if all are wanted
   const OriginTest* origin = nullptr;  ///< if the line leaves a surface
   const RootSides* trims = nullptr;    ///< if loops cut the leaf that is searched
@@ -156,32 +151,40 @@ struct RayQuery {
     }
     const double t = line.t_at(root.s);
     if (!(t >= least && t <= ray.tfar)) return false;
-    if (trims == nullptr) return add(root);
+    if (trims == nullptr) return add(root, t);
     const TrimSide side = trims->side_of(root);
     if (side == TrimSide::outside) return true;
     LeafRoot kept = root;
     kept.certified = kept.certified && side == TrimSide::inside;
-    return add(kept);
+    return add(kept, t);
   }
 
   /// Takes the point of an edge that the line passes within its gap. Where all roots are wanted it is none.
   void take_seam(const LeafRoot& root, double gap) {
     seam_gap = std::max(seam_gap, gap);
-    if (wanted != RootsWanted::all) add(root);
+    if (wanted != RootsWanted::all) add(root, line.t_at(root.s));
   }
 
  private:
+  /// Returns whether a root is the closest so far. Of roots at equal t it is that of the first patch, whichever was
+  /// searched first; s is finer than t, so it would tell the scene of a whole model from those of its parts.
+  bool comes_first(const LeafRoot& root, double t) const {
+    if (!found || t != best_t) return !found || t < best_t;
+    return std::tie(root.patch, root.u, root.v) < std::tie(best.patch, best.u, best.v);
+  }
+
   /// Adds a root that counts.
-  bool add(const LeafRoot& root) {
+  bool add(const LeafRoot& root, double t) {
     if (wanted == RootsWanted::all) {
       try {
         roots.push_back(root);
       } catch (...) {  // called from Embree, which cannot handle exceptions
         overflow = true;
       }
-    } else if (!found || comes_before(root, best)) {
+    } else if (comes_first(root, t)) {
       if (filter != nullptr && !counts(root)) return true;
       best = root;
+      best_t = t;
       far = std::min(far, root.s);
     }
     unsure = std::min(unsure, root.from);
