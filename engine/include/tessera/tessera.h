@@ -49,6 +49,7 @@
 #include "tessera/io.h"
 #endif
 #if __has_include("tessera/transport.h")
+#include "tessera/part_hits.h"
 #include "tessera/part_mesh.h"
 #include "tessera/transport.h"
 #endif
