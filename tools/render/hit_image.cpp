@@ -44,7 +44,7 @@ Status check_surfaces(std::span<const Hit> hits, const Model& model) {
   return {};
 }
 
-Result<HitImage> cast(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
+Result<HitImage> cast(const ClosestHits& closest, const Box3& box, const Model& model, const Settings& settings,
                       const Execution& execution) {
   if (Status status = check(settings, box); !status.ok()) return status;
   HitImage image = empty_image(settings.width, settings.height);
@@ -57,7 +57,7 @@ Result<HitImage> cast(const RayScene& scene, const Box3& box, const Model& model
     for (std::size_t k = first; k < std::min(count, first + rays_per_band); ++k)
       rays.push_back(pixels.through(static_cast<double>(k % width) + 0.5, static_cast<double>(k / width) + 0.5));
     const std::span<Hit> met = std::span(hits).first(rays.size());
-    Status status = scene.closest(rays, met, Execution{.cancel = execution.cancel, .progress = {}});
+    Status status = closest(rays, met, Execution{.cancel = execution.cancel, .progress = {}});
     if (status.ok()) status = check_surfaces(met, model);
     if (!status.ok()) return status;
     for (std::size_t k = 0; k < met.size(); ++k) set_pixel(image, first + k, met[k], model);
@@ -68,9 +68,17 @@ Result<HitImage> cast(const RayScene& scene, const Box3& box, const Model& model
 
 }  // namespace
 
+Result<HitImage> cast_hits(const ClosestHits& closest, const Box3& box, const Model& model, const Settings& settings,
+                           const Execution& execution) {
+  return guarded([&] { return cast(closest, box, model, settings, execution); });
+}
+
 Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
                            const Execution& execution) {
-  return guarded([&] { return cast(scene, box, model, settings, execution); });
+  const ClosestHits closest = [&](std::span<const Ray> rays, std::span<Hit> hits, const Execution& how) {
+    return scene.closest(rays, hits, how);
+  };
+  return cast_hits(closest, box, model, settings, execution);
 }
 
 }  // namespace tessera::render

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "render/render.h"
@@ -22,10 +24,16 @@ struct HitImage {
   std::vector<std::uint32_t> surfaces, patches;  ///< counted from 0
 };
 
+/// Finds the closest hits of rays, as RayScene::closest() does.
+using ClosestHits = std::function<Status(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution)>;
+
 /// Casts a ray per pixel. Uses only size and camera of the settings. `model` is the one that the scene was made of. The
 /// result is the same for any number of threads, byte for byte. Memory: 40 bytes per pixel. Errors: those of render,
 /// and invalid_argument (the scene has more surfaces than the model).
 Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
+                           const Execution& execution = {});
+/// Does the same with hits from elsewhere; `closest` is called on this thread, with a band of rows at a time.
+Result<HitImage> cast_hits(const ClosestHits& closest, const Box3& box, const Model& model, const Settings& settings,
                            const Execution& execution = {});
 
 /// Writes OpenEXR, lossless (ZIP): 32-bit floats Z (depth), N.X N.Y N.Z, UV.U UV.V, and 32-bit integers surface and

@@ -8,15 +8,15 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <new>
 
 #include "render/random.h"
 #include "render/tile.h"
+#include "tessera/guard.h"
 
 namespace tessera::render {
 namespace {
 
-constexpr int tile_side = 8;
+constexpr int tile_side = band_height;
 constexpr double exposure = 0.58;
 
 /// The curve of Narkowicz, ACES filmic tone mapping curve, 2016.
@@ -80,7 +80,7 @@ Status draw(const View& view, const Tile& tile, Workspace& work, Image& image) {
   return {};
 }
 
-/// Draws all tiles on all threads of the caller's arena; stops at the first failure.
+/// Draws tiles on all threads of the caller's arena; stops at the first failure.
 class Drawing {
  public:
   Drawing(const View& view, const Execution& execution, Image& image)
@@ -90,13 +90,20 @@ class Drawing {
         columns_((image.width + tile_side - 1) / tile_side),
         tiles_(columns_ * ((image.height + tile_side - 1) / tile_side)) {}
 
-  Status run() {
-    tbb::parallel_for(0, tiles_, [this](int index) { draw_tile(index); });
+  Status run() { return run(0, tiles_); }
+  /// Draws the tiles of a band, if it is one of the picture.
+  Status run_band(std::uint64_t band) {
+    return run(static_cast<int>(band) * columns_, (static_cast<int>(band) + 1) * columns_);
+  }
+  std::uint64_t bands() const { return static_cast<std::uint64_t>(tiles_ / columns_); }
+
+ private:
+  Status run(int first, int end) {
+    tbb::parallel_for(first, end, [this](int index) { draw_tile(index); });
     if (execution_.cancel && execution_.cancel->load()) return Status(StatusCode::cancelled, "cancelled by the caller");
     return status_;
   }
 
- private:
   void draw_tile(int index) {
     if (failed_ || (execution_.cancel && execution_.cancel->load(std::memory_order_relaxed))) return;
     Tile tile{index % columns_ * tile_side, index / columns_ * tile_side, 0, 0};
@@ -157,22 +164,42 @@ Status trace(const View& view, const Tile& tile, Workspace& work) {
   return view.scene.closest(work.rays, work.hits, Execution{.cancel = view.cancel, .progress = {}});
 }
 
-Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution) {
+namespace {
+
+/// Prepares a picture and draws it by draw(drawing).
+template <class Draw>
+Result<Image> render_by(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution,
+                        const Draw& draw_picture) {
   if (Status status = check(settings, box); !status.ok()) return status;
-  try {
+  return guarded([&]() -> Result<Image> {
     Image image{settings.width, settings.height, {}};
     image.rgb.resize(3 * static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height));
     const Camera camera = choose_camera(settings, box);
     const Environment environment(box, camera.eye, settings.up);
     const PixelRays rays(camera, settings.width, settings.height);
     const View view{scene, environment, rays, settings, box.diagonal(), execution.cancel};
-    if (Status status = Drawing(view, execution, image).run(); !status.ok()) return status;
+    Drawing drawing(view, execution, image);
+    if (Status status = draw_picture(drawing); !status.ok()) return status;
     return image;
-  } catch (const std::bad_alloc&) {
-    return Status(StatusCode::out_of_memory, "out of memory");
-  } catch (const std::exception& error) {
-    return Status(StatusCode::internal, error.what());
-  }
+  });
+}
+
+}  // namespace
+
+Result<Image> render(const RayScene& scene, const Box3& box, const Settings& settings, const Execution& execution) {
+  return render_by(scene, box, settings, execution, [](Drawing& drawing) { return drawing.run(); });
+}
+
+Result<Image> render_bands(const RayScene& scene, const Box3& box, const Settings& settings,
+                           const std::function<Result<std::uint64_t>()>& next_band, const Execution& execution) {
+  return render_by(scene, box, settings, execution, [&](Drawing& drawing) -> Status {
+    for (;;) {
+      const Result<std::uint64_t> band = next_band();
+      if (!band) return band.status();
+      if (*band >= drawing.bands()) return {};
+      if (Status status = drawing.run_band(*band); !status.ok()) return status;
+    }
+  });
 }
 
 }  // namespace tessera::render

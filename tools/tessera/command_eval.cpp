@@ -1,9 +1,13 @@
 // tessera eval: points, derivatives and normals of surfaces as a table.
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "arguments.h"
 #include "commands.h"
@@ -11,6 +15,7 @@
 #include "loading.h"
 #include "output.h"
 #include "progress.h"
+#include "team.h"
 #include "tessera/evaluate.h"
 
 namespace tessera::cli {
@@ -21,6 +26,7 @@ struct Options {
   std::string output, places, format = "csv";
   std::optional<Extent> grid;
   int derivatives = 0;
+  Team* team = nullptr;  ///< null: this process alone
 };
 
 /// A vector of a row: its name in JSON, the begin of its columns' names in CSV, and the number of derivatives from
@@ -37,10 +43,29 @@ constexpr std::array<Column, 6> columns{{{"position", "", &SurfaceJet::position,
                                          {"duv", "duv", &SurfaceJet::duv, 2},
                                          {"dvv", "dvv", &SurfaceJet::dvv, 2}}};
 
-/// Rows as CSV or JSON, all numbers with 17 digits.
+/// Text in memory, written as an OutputFile is.
+class TextBuffer {
+ public:
+  void write(std::string_view bytes) { text_ += bytes; }
+  void write(char c) { text_ += c; }
+  void write_number(std::uint32_t value) { text_ += std::to_string(value); }
+  void write_number(double value, int digits) {
+    char number[32];
+    text_.append(number, std::to_chars(number, number + 32, value, std::chars_format::general, digits).ptr);
+  }
+  bool failed() const { return false; }
+  std::string take() { return std::exchange(text_, {}); }
+
+ private:
+  std::string text_;
+};
+
+/// Rows as CSV or JSON, all numbers with 17 digits. `is_first`: whether the next row is the first of all.
+template <class Out>
 class RowWriter {
  public:
-  RowWriter(OutputFile& out, bool json, int derivatives) : out_(out), json_(json), derivatives_(derivatives) {}
+  RowWriter(Out& out, bool json, int derivatives, bool is_first = true)
+      : out_(out), json_(json), first_(is_first), derivatives_(derivatives) {}
 
   void begin() {
     if (json_) return out_.write("{\"rows\": [");
@@ -106,8 +131,8 @@ class RowWriter {
     if (json_) out_.write(']');
   }
 
-  OutputFile& out_;
-  bool json_, first_ = true;
+  Out& out_;
+  bool json_, first_;
   int derivatives_;
 };
 
@@ -187,13 +212,11 @@ class Evaluator {
   std::uint32_t converted_ = 0;
 };
 
-/// Writes a row for each place.
-Status write_rows(const Loaded& loaded, const Places& places, const Options& options, RowWriter& rows,
-                  const OutputFile& out) {
-  Evaluator evaluator(loaded.model, options.models.fit);
-  Progress progress("evaluating");
-  rows.begin();
-  for (std::size_t k = 0; k < places.count && !out.failed(); ++k) {
+/// Writes a row for each place of a run.
+template <class Out>
+Status write_rows(const Loaded& loaded, const Places& places, const PartRun& run, Evaluator& evaluator,
+                  RowWriter<Out>& rows, const Out& out, Progress& progress) {
+  for (std::size_t k = run.begin; k < run.end && !out.failed(); ++k) {
     if (k % 1024 == 0) {
       if (interrupted()) return Status(StatusCode::cancelled, "interrupted");
       progress.tell(static_cast<double>(k) / static_cast<double>(places.count));
@@ -205,6 +228,37 @@ Status write_rows(const Loaded& loaded, const Places& places, const Options& opt
     rows.write(place, *jet, *normal);
   }
   return {};
+}
+
+bool writes_json(const Job& job, const Options& options, const CommonOptions& common) {
+  return options.format == "json" || (common.json && job.output.empty());
+}
+
+/// Writes the rows of all places, which a team shares, a million at a time.
+Status write_rows_of_team(const Loaded& loaded, const Places& places, const Options& options, bool json,
+                          OutputFile& out) {
+  constexpr std::size_t places_at_once = std::size_t{1} << 20;
+  Evaluator evaluator(loaded.model, options.models.fit);
+  Progress progress("evaluating");
+  TextBuffer buffer;
+  for (std::size_t first = 0; first < places.count; first += places_at_once) {
+    PartRun run = options.team->run_of(std::min(places_at_once, places.count - first));
+    run.begin += first, run.end += first;
+    RowWriter<TextBuffer> rows(buffer, json, options.derivatives, run.begin == 0);
+    const Status own = write_rows(loaded, places, run, evaluator, rows, buffer, progress);
+    const Result<std::vector<std::string>> texts = options.team->gather(own, buffer.take());
+    if (!texts) return texts.status();
+    for (const std::string& text : *texts) out.write(text);
+  }
+  return {};
+}
+
+Status write_all_rows(const Loaded& loaded, const Places& places, const Options& options, bool json, OutputFile& out) {
+  if (options.team) return write_rows_of_team(loaded, places, options, json, out);
+  Evaluator evaluator(loaded.model, options.models.fit);
+  Progress progress("evaluating");
+  RowWriter<OutputFile> rows(out, json, options.derivatives);
+  return write_rows(loaded, places, {0, places.count}, evaluator, rows, out, progress);
 }
 
 Result<Places> places_of(const Options& options, const Model& model) {
@@ -227,25 +281,32 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
   return print_json(object);
 }
 
-Status run_eval(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
-  Result<OutputFile> out = open_output(job.output);
+Status eval_job(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output, options.team);
   if (!out) return out.status();
   const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
   if (!loaded) return loaded.status();
   const Result<Places> places = places_of(options, loaded->model);
   if (!places) return places.status();
-  RowWriter rows(*out, options.format == "json" || (common.json && job.output.empty()), options.derivatives);
+  const bool json = writes_json(job, options, common);
+  RowWriter<OutputFile> frame(*out, json, options.derivatives);
+  frame.begin();
   Status status = [&] {
     const auto phase = timings.phase("evaluate");
-    return write_rows(*loaded, *places, options, rows, *out);
+    return write_all_rows(*loaded, *places, options, json, *out);
   }();
   if (!status.ok()) return status;
   Json more = Json::object();
   add_seconds(more, common, timings);
-  rows.end(more);
+  frame.end(more);
   status = out->commit();
   if (status.ok() && common.json && !job.output.empty()) status = report(job, common, *loaded, places->count, timings);
   return status.ok() ? loaded->status() : status;
+}
+
+Status run_eval(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+  const Status own = eval_job(job, options, common, timings);
+  return options.team ? options.team->end_job(own) : own;
 }
 
 constexpr const char* footer =
@@ -281,6 +342,7 @@ void add_places(Command& command, Options& options) {
 void add_eval(Command& tool, Session& session) {
   Command& command = tool.add_command("eval", "Evaluate surfaces: positions, derivatives, normals");
   const auto options = std::make_shared<Options>();
+  options->team = session.team;
   add_models(command, options->models);
   command
       .add_text("-o,--output", "FILE", "The file to write, a folder, or a name with {name} [standard output]",
@@ -297,6 +359,7 @@ void add_eval(Command& tool, Session& session) {
   command.footer = footer;
   command.choose = [options, &session] {
     check_input(options->models);
+    if (options->team) check_input_of_team(options->models);
     const std::string extension = "." + options->format;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
     for (const Job& job : plan.jobs) check_overwriting("--output", job.output, {options->places});

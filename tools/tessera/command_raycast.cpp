@@ -18,8 +18,8 @@
 namespace tessera::cli {
 namespace {
 
-Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
-  Result<OutputFile> out = open_output(job.output);
+Status cast_job(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output, options.team);
   if (!out) return out.status();
   std::vector<Ray> rays;
   if (!options.rays.empty()) {
@@ -33,6 +33,11 @@ Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOp
                         : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
                                                    : draw_characters(options, *scene, *out, timings);
   return status.ok() ? scene->loaded.status() : status;
+}
+
+Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
+  const Status own = cast_job(job, options, common, timings);
+  return options.team ? options.team->end_job(own) : own;
 }
 
 render::Camera parse_camera(const std::string& text) {
@@ -123,8 +128,9 @@ void add_ray_options(Command& command, RaycastOptions& options, const std::vecto
           .add_text("--hits", "FILE.csv", "The table of hits to write, a folder, or a name with {name}", options.hits)
           .check(fault_of_name)
           .need(rays));
-  command.add_flag("--all-hits", "Find all hits of each ray, not only the closest, in exact mode", options.all_hits)
-      .need(rays);
+  if (!options.team)
+    command.add_flag("--all-hits", "Find all hits of each ray, not only the closest, in exact mode", options.all_hits)
+        .need(rays);
   for (const Option* const picture : of_pictures) rays.exclude(*picture);
 }
 
@@ -135,7 +141,8 @@ Plan plan_raycast(const RaycastOptions& options, const CommonOptions& common) {
     return plan;
   }
   const bool in_terminal = options.picture.empty();
-  if (in_terminal && (common.json || (!options.terminal && !output_is_terminal()))) {
+  const bool draws_there = options.terminal || (!options.team && output_is_terminal());
+  if (in_terminal && (common.json || !draws_there)) {
     throw UsageError("raycast",
                      "expected -o FILE, or --rays FILE.csv and --hits FILE.csv" +
                          std::string(common.json ? "" : ", or --terminal, as standard output is no terminal"));
@@ -152,6 +159,23 @@ void add_mode(Command& command, RaycastOptions& options) {
       "--rate", "N",
       "Segments of a patch's grid in each direction in --mode grid, 1 to 256 [64, fewer for many patches]", 1, 256,
       [&options](std::size_t rate) { options.rate = static_cast<int>(rate); });
+}
+
+void add_team_options(Command& command, RaycastOptions& options) {
+  command.begin_group("Ranks");
+  command.add_flag("--data-parallel",
+                   "Each rank has a scene of its run of the patches, and all trace all rays: for --rays and .exr "
+                   "pictures in exact mode",
+                   options.data_parallel);
+}
+
+/// Rules for ranks that work together.
+void check_team(const RaycastOptions& options) {
+  check_input_of_team(options.models);
+  if (!options.data_parallel) return;
+  if (options.rays.empty() && !is_exr(format_path(options.picture, options.format)))
+    throw UsageError("--data-parallel", "needs --rays FILE.csv, or a picture as .exr");
+  if (options.mode == RayMode::grid) throw UsageError("--data-parallel", "needs --mode exact, found --mode grid");
 }
 
 /// Rules that depend on the values of options.
@@ -173,12 +197,14 @@ void check_options(Command& command, const RaycastOptions& options) {
 void add_raycast(Command& tool, Session& session) {
   Command& command = tool.add_command("raycast", "Draw pictures with rays, or find the hits of your own rays");
   const auto options = std::make_shared<RaycastOptions>();
+  options->team = session.team;
   add_models(command, options->models);
   const std::vector<const Option*> of_pictures = add_picture_options(command, *options);
   add_stream_format(command, {"png", "exr"}, options->format);
   add_error_options(command, options->error, command.option("--shade"));
   add_ray_options(command, *options, of_pictures);
   add_mode(command, *options);
+  if (session.team) add_team_options(command, *options);
   add_reading(command, options->models);
   add_untrimmed(command, options->models);
   add_common(command, session.common);
@@ -186,6 +212,7 @@ void add_raycast(Command& tool, Session& session) {
   command.choose = [options, &command, &session] {
     check_input(options->models);
     check_options(command, *options);
+    if (options->team) check_team(*options);
     if (auto& camera = options->settings.camera) camera->up = render::from_z_up({0, 0, 1}, options->settings.up);
     const Plan plan = plan_raycast(*options, session.common);
     session.command = [options, plan, &session] {

@@ -9,10 +9,13 @@
 
 namespace tessera::cli {
 
+class Team;
+
 /// The command that the user has chosen.
 struct Session {
   std::function<Status()> command;
   CommonOptions common;
+  Team* team = nullptr;  ///< null: this process alone
 };
 
 /// Sets name, purpose and closing words of `tessera --help`.

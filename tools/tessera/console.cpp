@@ -10,6 +10,7 @@ namespace {
 
 std::atomic<bool> interrupt_flag{false};
 volatile std::sig_atomic_t caught_signal = 0;
+const char* program_name = "tessera";
 
 extern "C" void remember_signal(int signal) {
   if (caught_signal != 0) {
@@ -35,7 +36,8 @@ Status write_text(std::string_view text, const std::string& path) {
 
 Status print_json(const Json& object) { return print(object.text() + "\n"); }
 
-void complain(const std::string& message) { std::fprintf(stderr, "tessera: %s\n", message.c_str()); }
+void complain(const std::string& message) { std::fprintf(stderr, "%s: %s\n", program_name, message.c_str()); }
+void set_program_name(const char* name) { program_name = name; }
 void warn(const std::string& message) { complain("warning: " + message); }
 
 Status already_said(StatusCode code) { return Status(code, ""); }

@@ -22,8 +22,10 @@ Status write_text(std::string_view text, const std::string& path);
 /// Prints one JSON object on a line of its own: several files give as many lines.
 Status print_json(const Json& object);
 
-/// Prints "tessera: ..." and the end of the line on standard error.
+/// Prints the program's name, ": ..." and the end of the line on standard error.
 void complain(const std::string& message);
+/// Sets the name in messages; it is "tessera" before. The text must outlive all calls.
+void set_program_name(const char* name);
 void warn(const std::string& message);
 /// An error whose message is already printed.
 Status already_said(StatusCode code);

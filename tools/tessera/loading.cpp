@@ -163,6 +163,11 @@ void check_input(const ModelOptions& options) {
     throw UsageError("--input-format", "is for MODEL - only; the extension of a file decides its format");
 }
 
+void check_input_of_team(const ModelOptions& options) {
+  if (std::ranges::find(options.files, stream_name) != options.files.end())
+    throw UsageError("MODEL", "processes cannot share standard input: name a file");
+}
+
 void add_reading(Command& command, ModelOptions& options) {
   command.add_length("--fit-tolerance", "LENGTH",
                      "Largest distance of patches from surfaces that are written as expressions, in the model's unit "

@@ -18,6 +18,8 @@ struct ModelOptions {
 };
 /// Throws UsageError if standard input has no format, or is there twice.
 void check_input(const ModelOptions& options);
+/// Throws UsageError if a model is standard input, which the processes of a team cannot share.
+void check_input_of_team(const ModelOptions& options);
 /// Adds MODEL... and --input-format.
 void add_models(Command& command, ModelOptions& options);
 /// Adds --fit-tolerance and --cad-reader.

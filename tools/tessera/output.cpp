@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "console.h"
+#include "team.h"
 
 namespace tessera::cli {
 namespace {
@@ -29,7 +30,8 @@ Status make_folders(const fs::path& folder) {
 
 }  // namespace
 
-Result<OutputFile> open_output(const std::string& path) {
+Result<OutputFile> open_output(const std::string& path, const Team* team) {
+  if (team && !team->leads()) return OutputFile::make("/dev/null");
   if (path.empty() || is_stream(path)) return OutputFile::standard_output(&interrupted());
   if (Status status = make_folders(fs::path(path).parent_path()); !status.ok())
     return Status(status.code(), path + ": cannot be written: " + status.message());

@@ -10,6 +10,7 @@
 #include "render/mesh_distance.h"
 #include "render/mesh_patches.h"
 #include "render/render.h"
+#include "team.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {
@@ -26,6 +27,8 @@ struct RaycastOptions {
   int rate = 0;  ///< of grid mode; 0: chosen by the number of patches
   render::Settings settings;
   MeshErrorOptions error;
+  Team* team = nullptr;        ///< null: this process alone
+  bool data_parallel = false;  ///< whether each process of the team has a run of the patches
 };
 
 /// The data of a job: surfaces, or meshes whose triangles are the patches. The scene refers to the set.
@@ -39,6 +42,9 @@ struct RaycastScene {
   std::vector<std::optional<Colour>> colours = {};   ///< of the patches of surfaces; none: no face has a colour
   double mesh_bound = 0;                             ///< of the mesh that surfaces are drawn by; 0 if they are not
   bool keeps_trims = false;                          ///< whether that mesh is of what loops keep
+  std::optional<std::uint64_t> first_patch = {};     ///< if the set has only a run of the patches
+  std::optional<std::size_t> all_patches = {};       ///< then how many there are
+  std::optional<Box3> all_box = {};                  ///< and their box
 
   /// The options' settings, with what this scene adds.
   render::Settings settings(const RaycastOptions& options) const;
@@ -47,6 +53,11 @@ struct RaycastScene {
   /// How surfaces are drawn, as "drawn by a mesh within 0.001 of the surfaces"; empty if rays meet them as they are.
   std::string surfaces_caption() const;
   std::string counted_parts() const;  ///< "32 patches", "1 triangle"
+  Box3 box() const { return all_box ? *all_box : rays.box(); }
+  std::size_t patch_count() const { return all_patches ? *all_patches : set.patch_count(); }
+  /// Finds the closest hits, with the team if there is one: see Team::closest().
+  Status closest(const RaycastOptions& options, std::span<const Ray> of, std::span<Hit> hits,
+                 const Execution& execution) const;
 };
 
 /// Reads the models or meshes of a job, and builds the scene. Errors: those of reading; invalid_argument (surfaces and

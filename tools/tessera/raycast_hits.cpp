@@ -9,16 +9,17 @@ namespace tessera::cli {
 namespace {
 
 /// Casts rays. The result is lists of hits: one or none per ray for closest hits, or all.
-Result<HitLists> cast(const RaycastScene& scene, std::span<const Ray> rays, bool all, Timings& timings) {
+Result<HitLists> cast(const RaycastScene& scene, const RaycastOptions& options, std::span<const Ray> rays,
+                      Timings& timings) {
   const auto phase = timings.phase("evaluate");
   Progress progress("casting rays");
   HitLists lists;
-  if (all) {
+  if (options.all_hits) {
     const Status status = scene.rays.all(rays, lists, progress.execution());
     return status.ok() ? Result<HitLists>(std::move(lists)) : status;
   }
   std::vector<Hit> hits(rays.size());
-  if (const Status status = scene.rays.closest(rays, hits, progress.execution()); !status.ok()) return status;
+  if (const Status status = scene.closest(options, rays, hits, progress.execution()); !status.ok()) return status;
   lists.first.push_back(0);
   for (const Hit& hit : hits) {
     if (hit.kind == HitKind::hit) lists.hits.push_back(hit);
@@ -31,7 +32,7 @@ Result<HitLists> cast(const RaycastScene& scene, std::span<const Ray> rays, bool
 
 Status write_ray_hits(const Job& job, const RaycastOptions& options, const CommonOptions& common,
                       const RaycastScene& scene, std::span<const Ray> rays, OutputFile& out, Timings& timings) {
-  Result<HitLists> lists = cast(scene, rays, options.all_hits, timings);
+  Result<HitLists> lists = cast(scene, options, rays, timings);
   if (!lists) return lists.status();
   const HitCounts counts = use_own_parameters(scene.loaded.model, *lists);
   {
@@ -57,7 +58,7 @@ Status write_ray_hits(const Job& job, const RaycastOptions& options, const Commo
   object["uncertified"] = counts.uncertified;
   object["incomplete"] = counts.incomplete;
   object["seam"] = counts.seam;
-  add_model_facts(object, scene.loaded, scene.set);
+  add_model_facts(object, scene.loaded, scene.patch_count(), scene.set.fit_error());
   add_seconds(object, common, timings);
   return print_report(job.output, object.text() + "\n");
 }

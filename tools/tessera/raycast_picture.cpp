@@ -13,10 +13,17 @@
 namespace tessera::cli {
 namespace {
 
-Result<render::Image> draw(const RaycastScene& scene, const render::Settings& settings, Timings& timings) {
+Result<render::Image> draw(const RaycastScene& scene, const RaycastOptions& options, const render::Settings& settings,
+                           Timings& timings) {
   const auto phase = timings.phase("evaluate");
   Progress progress("casting rays");
-  return render::render(scene.rays, scene.rays.box(), settings, progress.execution());
+  return options.team ? options.team->draw(scene.rays, scene.box(), settings, progress.execution())
+                      : render::render(scene.rays, scene.box(), settings, progress.execution());
+}
+
+/// The error of a picture with its file; a team's names the process that failed.
+Status named(const Job& job, const RaycastOptions& options, const Status& status) {
+  return options.team ? status : in_file(job.output, status);
 }
 
 /// The bar that explains the colours of a shade; nothing for shades whose colours are no numbers.
@@ -26,7 +33,7 @@ std::optional<render::ColourBar> colour_bar(render::Shade shade, const RaycastSc
     return render::ColourBar{render::error_colour, {{0, "0"}, {0.5, readable(red / 2, 3)}, {1, readable(red, 3)}}};
   }
   if (shade == render::Shade::curvature) {
-    const double full = render::curvature_at(0.5, scene.rays.box().diagonal());
+    const double full = render::curvature_at(0.5, scene.box().diagonal());
     return render::ColourBar{[](double place) { return render::curvature_colour(2 * place - 1); },
                              {{0.25, readable(-full, 3)}, {0.5, "0"}, {0.75, readable(full, 3)}}};
   }
@@ -39,10 +46,10 @@ std::optional<render::ColourBar> colour_bar(render::Shade shade, const RaycastSc
 }
 
 /// Writes the picture: with a bar if colours are numbers, and a caption if the model is trimmed or an error is shown.
-Status write_colours(const Job& job, const render::Settings& settings, const RaycastScene& scene, OutputFile& out,
-                     Timings& timings) {
-  Result<render::Image> image = draw(scene, settings, timings);
-  if (!image) return in_file(job.output, image.status());
+Status write_colours(const Job& job, const RaycastOptions& options, const render::Settings& settings,
+                     const RaycastScene& scene, OutputFile& out, Timings& timings) {
+  Result<render::Image> image = draw(scene, options, settings, timings);
+  if (!image) return named(job, options, image.status());
   if (const auto bar = colour_bar(settings.shade, scene)) render::add_colour_bar(*image, *bar);
   if (const std::vector<std::string> captions = scene.captions(); !captions.empty())
     render::add_caption(*image, captions);
@@ -53,14 +60,17 @@ Status write_colours(const Job& job, const render::Settings& settings, const Ray
   return status.ok() ? out.commit() : status;
 }
 
-Status write_numbers(const Job& job, const render::Settings& settings, const RaycastScene& scene, OutputFile& out,
-                     Timings& timings) {
+Status write_numbers(const Job& job, const RaycastOptions& options, const render::Settings& settings,
+                     const RaycastScene& scene, OutputFile& out, Timings& timings) {
+  const render::ClosestHits closest = [&](std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) {
+    return scene.closest(options, rays, hits, execution);
+  };
   const Result<render::HitImage> image = [&] {
     const auto phase = timings.phase("evaluate");
     Progress progress("casting rays");
-    return render::cast_hits(scene.rays, scene.rays.box(), scene.loaded.model, settings, progress.execution());
+    return render::cast_hits(closest, scene.box(), scene.loaded.model, settings, progress.execution());
   }();
-  if (!image) return in_file(job.output, image.status());
+  if (!image) return named(job, options, image.status());
   const auto phase = timings.phase("write");
   Status status = render::write_exr(*image, out);
   return status.ok() ? out.commit() : status;
@@ -72,8 +82,8 @@ Status draw_file(const Job& job, const RaycastOptions& options, const CommonOpti
                  OutputFile& out, Timings& timings) {
   const render::Settings settings = scene.settings(options);
   const bool numbers = is_exr(format_path(job.output, options.format));
-  const Status written =
-      numbers ? write_numbers(job, settings, scene, out, timings) : write_colours(job, settings, scene, out, timings);
+  const Status written = numbers ? write_numbers(job, options, settings, scene, out, timings)
+                                 : write_colours(job, options, settings, scene, out, timings);
   if (!written.ok()) return written;
   if (!common.json) {
     return print_report(job.output, job.output + ": " + std::to_string(settings.width) + " x " +
@@ -89,7 +99,7 @@ Status draw_file(const Job& job, const RaycastOptions& options, const CommonOpti
   const std::vector<std::string> captions = scene.captions();
   object["caption"] = numbers || captions.empty() ? "" : captions.front();
   if (scene.error) object["error"] = scene.error->json();
-  add_model_facts(object, scene.loaded, scene.set);
+  add_model_facts(object, scene.loaded, scene.patch_count(), scene.set.fit_error());
   add_seconds(object, common, timings);
   return print_report(job.output, object.text() + "\n");
 }
@@ -107,7 +117,7 @@ Status draw_characters(const RaycastOptions& options, const RaycastScene& scene,
     settings.background = {};
     if (!options.shaded) settings.shade = render::Shade::clay;
   }
-  const Result<render::Image> image = draw(scene, settings, timings);
+  const Result<render::Image> image = draw(scene, options, settings, timings);
   if (!image) return in_file(scene.loaded.files[0], image.status());
   const auto phase = timings.phase("write");
   out.write(as_characters(*image, colours));

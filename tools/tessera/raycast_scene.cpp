@@ -48,12 +48,14 @@ Status check_mesh_options(const std::string& mesh, const Job& job, const Raycast
   return {StatusCode::invalid_argument, wants + " surfaces, found the mesh " + mesh};
 }
 
-Result<RayScene> build(const PatchSet& set, const RaycastOptions& asked, const std::string& file, Timings& timings) {
+Result<RayScene> build(const PatchSet& set, const RaycastOptions& asked, const std::string& file, Timings& timings,
+                       const std::optional<Box3>& box = {}) {
   const auto phase = timings.phase("build");
   Progress progress("building the scene");
   RaySceneOptions options;
   options.mode = asked.mode;
   options.rate = asked.rate > 0 ? asked.rate : scene_rate(set.patch_count());
+  options.box = box;
   Result<RayScene> rays = RayScene::make(set, options, progress.execution());
   return rays ? std::move(rays) : in_file(file, rays.status());
 }
@@ -152,11 +154,51 @@ Result<RaycastScene> make_drawn_scene(Loaded loaded, const PatchSet& surfaces, c
   return scene;
 }
 
+/// Makes a set of a run of a set's patches. Errors: unsupported (trims, shapes), those of PatchSet::make().
+Result<PatchSet> part_of_set(const PatchSet& set, const Model& model, const PartRun& run) {
+  const auto unsupported = [](const char* what) {
+    return Status(StatusCode::unsupported, std::string("--data-parallel: the model has ") + what +
+                                               ", and parts of it would not know how these go on in other parts");
+  };
+  if (!model.instances.empty()) return unsupported("shapes with edges");
+  if (set.cut_count() > 0) return unsupported("trimmed patches");
+  std::vector<BezierPatch> patches;
+  std::vector<PatchSource> sources;
+  for (std::size_t k = run.begin; k < run.end; ++k) {
+    patches.push_back(set.patch(k));
+    sources.push_back(set.source(k));
+  }
+  return PatchSet::make(patches, {.blocks = set.blocks(), .fit_error = set.fit_error(), .sources = sources});
+}
+
+/// Makes the scene of this process's run of the patches.
+Result<RaycastScene> make_part_scene(Loaded loaded, const PatchSet& whole, const RaycastOptions& options,
+                                     Timings& timings) {
+  const PartRun run = options.team->run_of(whole.patch_count());
+  if (run.begin == run.end)
+    return in_file(loaded.files[0],
+                   Status(StatusCode::invalid_argument, "--data-parallel: there are fewer patches than ranks: " +
+                                                            counted(whole.patch_count(), "patch", "patches")));
+  Result<PatchSet> set = part_of_set(whole, loaded.model, run);
+  if (!set) return in_file(loaded.files[0], set.status());
+  Result<RayScene> rays = build(*set, options, loaded.files[0], timings, whole.box());
+  if (!rays) return rays.status();
+  const Result<Box3> box = options.team->common_box(rays->box());
+  if (!box) return box.status();
+  loaded.grids = {};
+  RaycastScene scene{std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
+  scene.first_patch = run.begin;
+  scene.all_patches = whole.patch_count();
+  scene.all_box = *box;
+  return scene;
+}
+
 Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
   Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
   Result<PatchSet> set = pack(*loaded, options.models, timings);
   if (!set) return set.status();
+  if (options.data_parallel) return make_part_scene(*std::move(loaded), *set, options, timings);
   if (options.edges && shows_shape(job, options)) return make_drawn_scene(*std::move(loaded), *set, options, timings);
   if (options.edges)
     return Status(StatusCode::invalid_argument, "--edges needs --shade lambert, normals or clay, and a .png picture");
@@ -209,7 +251,13 @@ std::string RaycastScene::surfaces_caption() const {
 }
 
 std::string RaycastScene::counted_parts() const {
-  return meshes ? counted(meshes->triangle_count(), "triangle") : counted(set.patch_count(), "patch", "patches");
+  return meshes ? counted(meshes->triangle_count(), "triangle") : counted(patch_count(), "patch", "patches");
+}
+
+Status RaycastScene::closest(const RaycastOptions& options, std::span<const Ray> of, std::span<Hit> hits,
+                             const Execution& execution) const {
+  return options.team ? options.team->closest(rays, first_patch, of, hits, execution)
+                      : rays.closest(of, hits, execution);
 }
 
 Result<RaycastScene> make_scene(const Job& job, const RaycastOptions& options, Timings& timings) {

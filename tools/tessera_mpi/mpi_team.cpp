@@ -1,0 +1,161 @@
+#include "tessera_mpi/mpi_team.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "tessera/guard.h"
+#include "tessera/part_hits.h"
+
+namespace tessera::cli {
+namespace {
+
+int error_output = STDERR_FILENO;
+
+/// A band of a picture, as it is sent: its number and its bytes.
+void append_band(Message& message, std::uint64_t band, std::span<const std::uint8_t> rgb) {
+  const auto number = std::as_bytes(std::span(&band, 1)), bytes = std::as_bytes(rgb);
+  message.insert(message.end(), number.begin(), number.end());
+  message.insert(message.end(), bytes.begin(), bytes.end());
+}
+
+/// The bytes of a band of an image; the last one may be lower than the others.
+std::span<std::uint8_t> band_of(render::Image& image, std::uint64_t band) {
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width), begin = band * render::band_height * row;
+  return std::span(image.rgb).subspan(begin, std::min(render::band_height * row, image.rgb.size() - begin));
+}
+
+void take_bands(const Message& message, render::Image& image) {
+  for (std::size_t at = 0; at < message.size();) {
+    std::uint64_t band = 0;
+    std::memcpy(&band, message.data() + at, sizeof(band));
+    const std::span<std::uint8_t> bytes = band_of(image, band);
+    std::memcpy(bytes.data(), message.data() + at + sizeof(band), bytes.size());
+    at += sizeof(band) + bytes.size();
+  }
+}
+
+/// Whether all ranks have this error: it names one of them.
+bool is_of_all(const Status& status) { return status.message().starts_with("part "); }
+
+}  // namespace
+
+void end_all_ranks(const Status& status) {
+  const std::string text = "tessera_mpi: " + status.message() + "\n";
+  [[maybe_unused]] const ssize_t written = ::write(error_output, text.data(), text.size());
+  remove_temporaries();
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  ::_exit(1);
+}
+
+void be_silent() {
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  error_output = ::dup(STDERR_FILENO);
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::dup2(nowhere, STDERR_FILENO);
+  ::close(nowhere);
+}
+
+Result<std::unique_ptr<MpiTeam>> MpiTeam::make() {
+  Result<std::unique_ptr<Transport>> transport = make_mpi_transport(MPI_COMM_WORLD);
+  if (!transport) return transport.status();
+  return std::unique_ptr<MpiTeam>(new MpiTeam(*std::move(transport)));
+}
+
+/// An error of one rank becomes that of all.
+Status MpiTeam::agree(const Status& own) {
+  const Status all = transport_->agree(own);
+  if (!all.ok() && !is_of_all(all)) end_all_ranks(all);
+  job_has_failed_ = !all.ok();
+  return all;
+}
+
+Status MpiTeam::end_job(const Status& own) {
+  const bool is_known = std::exchange(job_has_failed_, false);
+  const Status all = is_known ? own : agree(own);
+  job_has_failed_ = false;
+  return own.ok() ? all : own;
+}
+
+PartRun MpiTeam::run_of(std::size_t patches) const {
+  return run_of_part(patches, transport_->part(), transport_->part_count());
+}
+
+Result<Box3> MpiTeam::common_box(const Box3& own) {
+  if (Status status = agree({}); !status.ok()) return status;
+  double sides[] = {-own.lower.x, -own.lower.y, -own.lower.z, own.upper.x, own.upper.y, own.upper.z};
+  if (Status status = transport_->reduce_max(sides); !status.ok()) end_all_ranks(status);
+  return Box3{{-sides[0], -sides[1], -sides[2]}, {sides[3], sides[4], sides[5]}};
+}
+
+Result<std::vector<Message>> MpiTeam::send_to_leader(Message message) {
+  std::vector<Message> messages(transport_->part_count());
+  messages[0] = std::move(message);
+  Result<std::vector<Message>> all = transport_->exchange(std::move(messages));
+  if (!all) end_all_ranks(all.status());
+  return all;
+}
+
+Result<std::vector<std::string>> MpiTeam::gather(const Status& own, std::string text) {
+  if (Status status = agree(own); !status.ok()) return status;
+  const auto bytes = std::as_bytes(std::span(text));
+  const Result<std::vector<Message>> all = send_to_leader(Message(bytes.begin(), bytes.end()));
+  std::vector<std::string> texts;
+  for (const Message& sent : *all) texts.emplace_back(reinterpret_cast<const char*>(sent.data()), sent.size());
+  return texts;
+}
+
+Result<render::Image> MpiTeam::draw(const RayScene& scene, const Box3& box, const render::Settings& settings,
+                                    const Execution& execution) {
+  if (Status status = agree({}); !status.ok()) return status;
+  Result<SharedCounter> counter = SharedCounter::make(MPI_COMM_WORLD);
+  if (!counter) end_all_ranks(counter.status());
+  std::vector<std::uint64_t> bands;
+  const auto next_band = [&]() -> Result<std::uint64_t> {
+    const Result<std::uint64_t> band = counter->next();
+    if (band) bands.push_back(*band);
+    return band;
+  };
+  Result<render::Image> image = render::render_bands(scene, box, settings, next_band, execution);
+  if (Status status = agree(image.status()); !status.ok()) return status;
+  bands.pop_back();  // below the picture
+  Message message;
+  for (const std::uint64_t band : bands)
+    if (!leads()) append_band(message, band, band_of(*image, band));
+  const Result<std::vector<Message>> all = send_to_leader(std::move(message));
+  if (leads())
+    for (const Message& sent : *all) take_bands(sent, *image);
+  return image;
+}
+
+/// Traces a run of the rays in a scene that all ranks have.
+Result<std::vector<Hit>> MpiTeam::own_run_of_hits(const RayScene& scene, std::span<const Ray> rays,
+                                                  const Execution& execution) {
+  const PartRun run = run_of_part(rays.size(), transport_->part(), transport_->part_count());
+  std::vector<Hit> hits(run.end - run.begin);
+  const Status status = agree(scene.closest(rays.subspan(run.begin, hits.size()), hits, execution));
+  return status.ok() ? Result<std::vector<Hit>>(std::move(hits)) : status;
+}
+
+Status MpiTeam::closest(const RayScene& scene, std::optional<std::uint64_t> first_patch, std::span<const Ray> rays,
+                        std::span<Hit> hits, const Execution& execution) {
+  const Result<std::vector<Hit>> run = first_patch ? closest_in_parts(*transport_, scene, *first_patch, rays, execution)
+                                                   : own_run_of_hits(scene, rays, execution);
+  if (!run && !is_of_all(run.status())) end_all_ranks(run.status());
+  job_has_failed_ = !run.ok();
+  if (!run) return run.status();
+  const auto bytes = std::as_bytes(std::span(*run));
+  const Result<std::vector<Message>> all = send_to_leader(Message(bytes.begin(), bytes.end()));
+  std::byte* place = std::as_writable_bytes(hits).data();
+  for (const Message& sent : *all) {
+    if (!sent.empty()) std::memcpy(place, sent.data(), sent.size());
+    place += sent.size();
+  }
+  return {};
+}
+
+}  // namespace tessera::cli

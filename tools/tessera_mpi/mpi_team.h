@@ -1,0 +1,48 @@
+#pragma once
+// The ranks of MPI as a team.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "team.h"
+#include "tessera/mpi.h"
+#include "tessera/status.h"
+
+namespace tessera::cli {
+
+/// A rank of MPI_COMM_WORLD. Rank 0 leads.
+class MpiTeam final : public Team {
+ public:
+  /// Errors: those of make_mpi_transport().
+  static Result<std::unique_ptr<MpiTeam>> make();
+
+  bool leads() const override { return transport_->part() == 0; }
+  Result<render::Image> draw(const RayScene& scene, const Box3& box, const render::Settings& settings,
+                             const Execution& execution) override;
+  Status closest(const RayScene& scene, std::optional<std::uint64_t> first_patch, std::span<const Ray> rays,
+                 std::span<Hit> hits, const Execution& execution) override;
+  PartRun run_of(std::size_t patches) const override;
+  Result<Box3> common_box(const Box3& own) override;
+  Result<std::vector<std::string>> gather(const Status& own, std::string text) override;
+  Status end_job(const Status& own) override;
+
+ private:
+  explicit MpiTeam(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {}
+
+  Status agree(const Status& own);
+  Result<std::vector<Message>> send_to_leader(Message message);
+  Result<std::vector<Hit>> own_run_of_hits(const RayScene& scene, std::span<const Ray> rays,
+                                           const Execution& execution);
+
+  std::unique_ptr<Transport> transport_;
+  bool job_has_failed_ = false;  ///< all know it
+};
+
+/// Prints an error that the other ranks do not know, and ends them all.
+[[noreturn]] void end_all_ranks(const Status& status);
+
+/// Sends what this rank prints nowhere but the message of end_all_ranks(): one rank reports.
+void be_silent();
+
+}  // namespace tessera::cli
