@@ -96,8 +96,8 @@ struct TextSyntax {
 /// at the begin is skipped. Lines are counted only when an error is reported.
 class TextCursor {
  public:
-  /// `name` stands for the file in messages.
-  TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax = {});
+  /// `name` stands for the file in messages. `first_line`: the number of the text's first line, for a part of a file.
+  TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax = {}, std::size_t first_line = 1);
 
   /// Skips blanks and a comment, but not the end of the line.
   void skip_blanks() {
@@ -160,7 +160,7 @@ class TextCursor {
   Status failure(std::string_view sentence) const;
   /// "name:line" of this place. Errors: none; throws std::bad_alloc if memory runs out. Memory: the result.
   std::string place() const { return std::string(name_) + ":" + std::to_string(line()); }
-  std::size_t line() const;                                                       ///< counted from 1
+  std::size_t line() const;                                                       ///< counted from first_line
   std::string_view name() const { return name_; }                                 ///< as given
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }  ///< bytes
   const char* position() const { return at_; }                                    ///< the byte here
@@ -193,6 +193,7 @@ class TextCursor {
   const char *begin_, *at_, *end_;
   std::string_view name_;
   TextSyntax syntax_;
+  std::size_t first_line_;
 };
 
 /// Returns `text` in quotes for a message: at most 40 bytes, unprintable ones in hexadecimal. Errors: none; throws

@@ -39,8 +39,13 @@ std::errc parse(std::string_view token, Number& value) {
 
 }  // namespace
 
-TextCursor::TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax)
-    : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), name_(name), syntax_(syntax) {
+TextCursor::TextCursor(std::string_view text, std::string_view name, const TextSyntax& syntax, std::size_t first_line)
+    : begin_(text.data()),
+      at_(begin_),
+      end_(begin_ + text.size()),
+      name_(name),
+      syntax_(syntax),
+      first_line_(first_line) {
   if (text.starts_with("\xEF\xBB\xBF")) at_ += 3;
 }
 
@@ -120,7 +125,7 @@ Status TextCursor::failure(std::string_view sentence) const {
 }
 
 std::size_t TextCursor::line() const {
-  auto line = static_cast<std::size_t>(std::count(begin_, at_, '\n')) + 1;
+  auto line = static_cast<std::size_t>(std::count(begin_, at_, '\n')) + first_line_;
   // At the end of a text whose last line is complete, reports that line rather than one that does not exist.
   if (at_ == end_ && at_ != begin_ && at_[-1] == '\n') --line;
   return line;

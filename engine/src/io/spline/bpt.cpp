@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "io/spline/item_reader.h"
 #include "surface/net/patch_pool.h"
 #include "tessera/files.h"
 #include "tessera/guard.h"
@@ -63,35 +64,87 @@ Result<BezierPatch> read_patch(TextCursor& cursor, const PatchPlace& place, Poin
   return BezierPatch::polynomial(degree_u, degree_v, std::span(points).first(static_cast<std::size_t>(wanted)));
 }
 
-Result<Model> parse(std::string_view text, std::string_view name) {
-  TextCursor cursor(text, name);
-  cursor.skip_space();
-  TextCursor after = cursor;
-  std::int64_t count = 0;
-  if (!after.take_number(count) || count < 1) return cursor.expected("the number of patches, at least 1");
-  cursor = after;
+constexpr auto ends_token = [] {
+  std::array<bool, 256> ends{};
+  for (const unsigned char c : {' ', '\t', '\r', '\n', '#'}) ends[c] = true;
+  return ends;
+}();
 
-  Model model;
-  // Bounds the patches that a file may state: the shortest one, of degree 1 x 1, takes 28 characters.
-  constexpr std::size_t shortest_patch = 28;
-  model.surfaces.reserve(std::min(static_cast<std::size_t>(count), cursor.remaining() / shortest_patch + 1));
-  Points points;
-  PatchPool pool;
-  for (std::int64_t k = 0; k < count; ++k) {
-    Result<BezierPatch> patch = read_patch(cursor, {k, count}, points);
-    if (!patch) return patch.status();
-    model.surfaces.push_back({{}, pool.placed(*patch)});
+/// Skips `count` tokens, or all that are left. Returns how many there were.
+std::size_t skip_tokens(TextCursor& cursor, std::size_t count) {
+  for (std::size_t k = 0; k < count; ++k) {
+    cursor.skip_space();
+    const char *const begin = cursor.position(), *const end = begin + cursor.remaining(), *at = begin;
+    while (at != end && !ends_token[static_cast<unsigned char>(*at)]) ++at;
+    if (at == begin) return k;
+    cursor.skip({begin, static_cast<std::size_t>(at - begin)});
   }
-  cursor.skip_space();
-  if (!cursor.at_end())
-    return cursor.expected("the end of the file after " + counted(static_cast<std::size_t>(count), "patch", "patches"));
-  return model;
+  return count;
 }
+
+class BptReader : public ItemReader {
+ public:
+  explicit BptReader(std::size_t count) : count_(static_cast<std::int64_t>(count)) {}
+
+  std::string_view cuts() const override { return " \t\n"; }
+
+  Status begin(TextCursor& cursor) override {
+    cursor.skip_space();
+    TextCursor after = cursor;
+    if (!after.take_number(count_) || count_ < 1) return cursor.expected("the number of patches, at least 1");
+    cursor = after;
+    return {};
+  }
+
+  bool more(TextCursor&, std::size_t item) const override { return static_cast<std::int64_t>(item) < count_; }
+
+  Result<ReadItem> read(TextCursor& cursor, std::size_t item, std::uint64_t) override {
+    Result<BezierPatch> patch = read_patch(cursor, place(item), points_);
+    if (!patch) return patch.status();
+    return ReadItem{.surface = ModelSurface{{}, pool_.placed(*patch)}};
+  }
+
+  Result<ReadItem> skip(TextCursor& cursor, std::size_t item, std::uint64_t) override {
+    int degree_u = 0, degree_v = 0;
+    Status status = read_degree(cursor, 'u', place(item), degree_u);
+    if (status.ok()) status = read_degree(cursor, 'v', place(item), degree_v);
+    if (!status.ok()) return status;
+    const int points = (degree_u + 1) * (degree_v + 1);
+    const std::size_t found = skip_tokens(cursor, 3 * static_cast<std::size_t>(points));
+    if (found / 3 < static_cast<std::size_t>(points))
+      return point_failure(cursor, place(item), static_cast<int>(found / 3), points);
+    return ReadItem{};
+  }
+
+  Status end(TextCursor& cursor, const PassedOver*) const override {
+    cursor.skip_space();
+    if (cursor.at_end()) return {};
+    return cursor.expected("the end of the file after " +
+                           counted(static_cast<std::size_t>(count_), "patch", "patches"));
+  }
+
+  std::size_t expected(std::uint64_t bytes) const override {
+    constexpr std::uint64_t shortest_patch = 28;  // characters, of degree 1 x 1
+    return static_cast<std::size_t>(std::min(static_cast<std::uint64_t>(count_), bytes / shortest_patch + 1));
+  }
+
+ private:
+  PatchPlace place(std::size_t item) const { return {static_cast<std::int64_t>(item), count_}; }
+
+  std::int64_t count_;
+  Points points_;
+  PatchPool pool_;
+};
 
 }  // namespace
 
 Result<Model> parse_bpt(std::string_view text, std::string_view name) {
-  return guarded([&] { return parse(text, name); });
+  return guarded([&] {
+    BptReader reader(0);
+    return read_items(reader, text, name);
+  });
 }
+
+std::unique_ptr<ItemReader> make_bpt_reader(std::size_t count) { return std::make_unique<BptReader>(count); }
 
 }  // namespace tessera::inline abi_0_1

@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "base/text.h"
-#include "io/file/make_room.h"
-#include "io/file/passed_over.h"
+#include "io/spline/item_reader.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
@@ -66,34 +65,24 @@ std::int64_t take_header(TextCursor& cursor, bool alone) {
   return !alone || cursor.take_line_end() ? kind : 0;
 }
 
-class G2Reader {
+/// Reads one object.
+class G2ObjectReader {
  public:
-  G2Reader(std::string_view text, std::string_view name)
-      : name_(name), cursor_(text, name), size_(text.size()), passed_over_(name) {}
+  /// `number` counts from 1. `beyond`: the bytes of the file after the text.
+  G2ObjectReader(TextCursor& cursor, std::size_t number, std::uint64_t beyond)
+      : cursor_(cursor), number_(number), beyond_(beyond), header_(cursor) {}
 
-  Result<Model> read() {
-    for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
-      header_ = cursor_;
-      const std::int64_t kind = take_header(cursor_, false);
-      if (kind == 0) return header_.expected("the header of an object (class, version 1 0, auxiliary numbers)");
-      ++object_;
-      const Status status = read_object(kind);
-      if (!status.ok()) return status;
-    }
-    if (model_.surfaces.empty()) {
-      return passed_over_.empty() ? cursor_.expected("an object") : passed_over_.nothing_else();
-    }
-    model_.warnings = passed_over_.warnings();
-    if (swapped_ > 0) {
-      model_.warnings.push_back(std::string(name_) + ": " + counted(swapped_, "elementary surface") +
-                                (swapped_ == 1 ? " has" : " have") + " u and v swapped in the file, but not here");
-    }
-    return std::move(model_);
+  Result<ReadItem> read() {
+    const std::int64_t kind = take_header(cursor_, false);
+    if (kind == 0) return header_.expected("the header of an object (class, version 1 0, auxiliary numbers)");
+    const Status status = read_object(kind);
+    if (!status.ok()) return status;
+    return std::move(item_);
   }
 
  private:
   Status read_object(std::int64_t kind) {
-    G2Numbers numbers(cursor_, header_, "object " + std::to_string(object_) + " (class " + std::to_string(kind) + ")");
+    G2Numbers numbers(cursor_, header_, "object " + std::to_string(number_) + " (class " + std::to_string(kind) + ")");
     switch (kind) {
       case g2_spline_surface:
         return read_spline(numbers);
@@ -113,7 +102,7 @@ class G2Reader {
 
   /// Skips to the next line that is a header.
   void pass_over(const PartName& name) {
-    passed_over_.add(name, header_);
+    item_.passed_over = PassedItem{name, header_};
     for (cursor_.skip_space(); !cursor_.at_end(); cursor_.skip_space()) {
       TextCursor ahead = cursor_;
       if (take_header(ahead, true) != 0) return;
@@ -130,15 +119,12 @@ class G2Reader {
     }
     Result<G2Object> object = make_g2_elementary(kind, record, numbers);
     if (!object) return object.status();
-    swapped_ += record.swapped;
+    item_.swapped = record.swapped;
     add({{}, std::move(object->surface), object->placement});
     return {};
   }
 
-  void add(ModelSurface surface) {
-    make_room(model_.surfaces, size_ - cursor_.remaining(), size_);
-    model_.surfaces.push_back(std::move(surface));
-  }
+  void add(ModelSurface surface) { item_.surface = std::move(surface); }
 
   /// Reads a spline surface after its class; none if it is not in space.
   Result<std::optional<BSplineSurface>> take_spline(G2Numbers& numbers) {
@@ -149,7 +135,7 @@ class G2Reader {
     if (dimension < 2) return std::optional<BSplineSurface>();
     const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
     const auto bytes = static_cast<std::size_t>(2 * (dimension + rational));  // the least that a point takes
-    if (count_u * count_v > cursor_.remaining() / bytes + 1) {
+    if (count_u * count_v > (cursor_.remaining() + beyond_) / bytes + 1) {
       return numbers.failure("the file is shorter than its " + std::to_string(count_u) + " x " +
                              std::to_string(count_v) + " points");
     }
@@ -297,13 +283,33 @@ class G2Reader {
     return {point.x / *weight, point.y / *weight, point.z / *weight};
   }
 
-  std::string_view name_;
-  TextCursor cursor_;
-  std::size_t size_;
-  TextCursor header_ = cursor_;  // of the object being read
-  PassedOver passed_over_;
-  Model model_;
-  std::size_t object_ = 0, swapped_ = 0;
+  TextCursor& cursor_;
+  std::size_t number_;
+  std::uint64_t beyond_;
+  TextCursor header_;
+  ReadItem item_;
+};
+
+class G2Reader : public ItemReader {
+ public:
+  // A header may fill its line, and what follows tells whether it does.
+  std::string_view cuts() const override { return "\n"; }
+
+  bool more(TextCursor& cursor, std::size_t) const override {
+    cursor.skip_space();
+    return !cursor.at_end();
+  }
+
+  Result<ReadItem> read(TextCursor& cursor, std::size_t item, std::uint64_t beyond) override {
+    return G2ObjectReader(cursor, item + 1, beyond).read();
+  }
+
+  Status end(TextCursor& cursor, const PassedOver* nothing) const override {
+    if (!nothing) return {};
+    return nothing->empty() ? cursor.expected("an object") : nothing->nothing_else();
+  }
+
+  std::size_t expected(std::uint64_t) const override { return 0; }
 };
 
 }  // namespace
@@ -338,7 +344,12 @@ Vec3 G2Numbers::vector(std::string_view what) {
 }
 
 Result<Model> parse_g2(std::string_view text, std::string_view name) {
-  return guarded([&] { return G2Reader(text, name).read(); });
+  return guarded([&] {
+    G2Reader reader;
+    return read_items(reader, text, name);
+  });
 }
+
+std::unique_ptr<ItemReader> make_g2_reader() { return std::make_unique<G2Reader>(); }
 
 }  // namespace tessera::inline abi_0_1
