@@ -56,6 +56,9 @@ class OutputFile {
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value, std::chars_format::general, digits).ptr -
                                       begin);
   }
+  /// Writes bytes `offset` bytes after the begin of the file, beside what write() writes one after the other. Only for
+  /// regular files. One thread at a time, as for write().
+  void write_at(std::uint64_t offset, std::string_view bytes);
 
   /// The final place of the file.
   const std::filesystem::path& path() const { return target_; }

@@ -47,6 +47,7 @@
 #include "tessera/cad.h"
 #include "tessera/files.h"
 #include "tessera/io.h"
+#include "tessera/mesh_pieces.h"
 #include "tessera/surface_file.h"
 #endif
 #if __has_include("tessera/transport.h")

@@ -249,6 +249,21 @@ void OutputFile::send(std::string_view bytes) {
   }
 }
 
+void OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
+  see_cancel();
+  while (!bytes.empty() && status_.ok()) {
+    const ssize_t sent = ::pwrite(destination_->file.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (sent < 0 && errno == EINTR) {
+      see_cancel();
+    } else if (sent < 0) {
+      fail(errno);
+    } else {
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+      offset += static_cast<std::uint64_t>(sent);
+    }
+  }
+}
+
 void OutputFile::see_cancel() {
   if (status_.ok() && cancel_ && cancel_->load())
     status_ = guarded([] { return Status(StatusCode::cancelled, "cancelled by the caller"); });

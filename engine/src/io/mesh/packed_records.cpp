@@ -14,7 +14,12 @@ constexpr std::size_t pieces_in_buffer = 16;               // small enough to st
 }  // namespace
 
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
-                    FunctionRef<void(std::size_t, std::size_t, char*)> pack) {
+                    FunctionRef<void(std::size_t, std::size_t, char*)> pack, std::optional<std::uint64_t> offset) {
+  const auto write = [&](std::string_view packed) {
+    if (!offset) return out.write(packed);
+    out.write_at(*offset, packed);
+    *offset += packed.size();
+  };
   const std::size_t piece = piece_bytes / bytes, room = std::min(count, pieces_in_buffer * piece);
   auto buffer = std::make_unique_for_overwrite<char[]>(room * bytes),
        packed_before = std::make_unique_for_overwrite<char[]>(room * bytes);
@@ -22,7 +27,7 @@ Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
   for (std::size_t first = 0; first < count && !out.failed(); first += room) {
     const std::size_t records = std::min(room, count - first);
     Status status = parallel_for(1 + (records + piece - 1) / piece, 1, {}, [&](std::size_t k, std::size_t) {
-      if (k == 0) return out.write(before);
+      if (k == 0) return write(before);
       const std::size_t begin = (k - 1) * piece, end = std::min(records, k * piece);
       pack(first + begin, first + end, buffer.get() + begin * bytes);
     });
@@ -30,7 +35,7 @@ Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
     std::swap(buffer, packed_before);
     before = {packed_before.get(), records * bytes};
   }
-  out.write(before);
+  write(before);
   return {};
 }
 

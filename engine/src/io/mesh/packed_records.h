@@ -2,7 +2,9 @@
 // Records of one size into a binary file, packed by all threads.
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <optional>
 
 #include "base/function_ref.h"
 #include "tessera/files.h"
@@ -11,9 +13,10 @@
 namespace tessera::inline abi_0_1 {
 
 /// Writes `count` records of `bytes` each. pack(first, last, to) stores the records [first, last) from `to` on, and is
-/// called for pieces of them from any number of threads. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
+/// called for pieces of them from any number of threads. `offset`: where the first stands in the file; none: after what
+/// was written last. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
-                    FunctionRef<void(std::size_t, std::size_t, char*)> pack);
+                    FunctionRef<void(std::size_t, std::size_t, char*)> pack, std::optional<std::uint64_t> offset = {});
 
 /// Stores three floats at `to`, one by one: to fill an array and copy it takes half as long again, because the copy
 /// reads before the stores are done.

@@ -1,4 +1,4 @@
-// PLY, the polygon file format (G. Turk, The PLY Polygon File Format, 1994).
+// Reads PLY, the polygon file format (G. Turk, The PLY Polygon File Format, 1994).
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,6 @@
 #include <string>
 
 #include "io/mesh/mesh_formats.h"
-#include "io/mesh/packed_records.h"
 #include "io/mesh/ply_header.h"
 #include "io/mesh/polygon.h"
 #include "tessera/files.h"
@@ -17,7 +16,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "PLY is read and written in the machine's own byte order");
+static_assert(std::endian::native == std::endian::little, "PLY is read in the machine's own byte order");
 
 /// The values of a binary body, one after the other.
 class BinaryValues {
@@ -253,68 +252,7 @@ class BodyReader {
   Mesh mesh_;
 };
 
-template <class T>
-char* put(char* to, const T* values, std::size_t count) {
-  std::memcpy(to, values, count * sizeof(T));
-  return to + count * sizeof(T);
-}
-
-void write_header(const Mesh& mesh, OutputFile& out) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment Tessera\nelement vertex ";
-  text += std::to_string(mesh.vertex_count()) + "\n";
-  for (std::size_t k = 0; k < vertex_names.size(); ++k) {
-    if ((k >= 3 && k < 6 && mesh.normals.empty()) || (k >= 6 && mesh.parameters.empty())) continue;
-    text += (k < 3 && !mesh.positions_f64.empty() ? "property double " : "property float ") +
-            std::string(vertex_names[k]) + "\n";
-  }
-  text += "element face " + std::to_string(mesh.triangle_count() + mesh.quad_count()) +
-          "\nproperty list uchar int vertex_indices\n";
-  if (mesh.has_patches()) text += "property int patch\n";
-  out.write(text + "end_header\n");
-}
-
-/// Writes faces with `corners` corners, each with its patch if `patches` is not empty.
-Status write_faces(OutputFile& out, std::size_t corners, std::span<const std::uint32_t> indices,
-                   std::span<const std::uint32_t> patches) {
-  const std::size_t face_bytes = 1 + sizeof(std::uint32_t) * (corners + (patches.empty() ? 0 : 1));
-  return write_packed(out, indices.size() / corners, face_bytes, [&](std::size_t first, std::size_t last, char* to) {
-    for (std::size_t k = first; k < last; ++k) {
-      *to++ = static_cast<char>(corners);
-      to = put(to, indices.data() + corners * k, corners);
-      if (!patches.empty()) to = put(to, patches.data() + k, 1);
-    }
-  });
-}
-
 }  // namespace
-
-Status write_ply(const Mesh& mesh, OutputFile& out) {
-  write_header(mesh, out);
-  const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty(), patches = mesh.has_patches();
-  const bool doubles = !mesh.positions_f64.empty();
-  const std::size_t vertex_bytes =
-      3 * (doubles ? sizeof(double) : sizeof(float)) + sizeof(float) * ((normals ? 3 : 0) + (parameters ? 2 : 0));
-  Status status =
-      write_packed(out, mesh.vertex_count(), vertex_bytes, [&](std::size_t first, std::size_t last, char* to) {
-        for (std::size_t k = first; k < last; ++k) {
-          if (doubles) {
-            to = put(to, mesh.positions_f64.data() + 3 * k, 3);
-          } else {
-            const float* const p = mesh.positions.data() + 3 * k;
-            put_floats(mesh.origin + Vec3{p[0], p[1], p[2]}, to);
-            to += 3 * sizeof(float);
-          }
-          if (normals) to = put(to, mesh.normals.data() + 3 * k, 3);
-          if (parameters) to = put(to, mesh.parameters.data() + 2 * k, 2);
-        }
-      });
-  if (!status.ok()) return status;
-  const auto known = [patches](const std::vector<std::uint32_t>& of) {
-    return patches ? std::span(of) : std::span<const std::uint32_t>();
-  };
-  if (status = write_faces(out, 3, mesh.indices, known(mesh.patches)); !status.ok()) return status;
-  return write_faces(out, 4, mesh.quads, known(mesh.quad_patches));
-}
 
 Result<Mesh> parse_ply(std::string_view bytes, std::string_view name, const MeshReadOptions& options) {
   const Result<PlyHeader> header = parse_ply_header(bytes, name);

@@ -163,6 +163,29 @@ Status validate(const Mesh& mesh) {
   return {};
 }
 
+Status validate_piece(const Mesh& piece, const MeshTotals& totals) {
+  const MeshTotals own = MeshTotals::of(piece);
+  const bool has_faces = own.triangles + own.quads > 0;
+  if (own.vertices == 0 && !has_faces) return {};
+  if (Status status = validate(piece); !status.ok()) return status;
+  if (own.normals != totals.normals || own.parameters != totals.parameters ||
+      (has_faces && own.patches != totals.patches) || own.double_positions != totals.double_positions)
+    return {StatusCode::count_mismatch, "a piece of the mesh has other attributes than the whole"};
+  return {};
+}
+
+Status check_patches(const Mesh& mesh, std::uint64_t first_patch) {
+  if (first_patch == 0 || !mesh.has_patches()) return {};
+  std::uint64_t most = 0;
+  for (const auto* const patches : {&mesh.patches, &mesh.quad_patches})
+    if (!patches->empty()) most = std::max<std::uint64_t>(most, *std::ranges::max_element(*patches));
+  constexpr std::uint64_t limit = std::numeric_limits<std::uint32_t>::max();
+  if (first_patch <= limit - most) return {};
+  return {StatusCode::unsupported, "patch " + std::to_string(most) + " of a piece is number " +
+                                       std::to_string(first_patch + most) + " of the whole, files hold up to " +
+                                       std::to_string(limit)};
+}
+
 Status validate(const MeshAssembly& assembly) {
   for (std::size_t k = 0; k < assembly.shapes.size(); ++k) {
     const ShapeMesh& shape = assembly.shapes[k];

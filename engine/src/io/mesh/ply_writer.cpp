@@ -1,0 +1,211 @@
+// PLY, binary little endian: the header, then a record for each vertex, triangle and quad.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "io/mesh/mesh_formats.h"
+#include "io/mesh/packed_records.h"
+#include "io/mesh/valid_mesh.h"
+#include "tessera/guard.h"
+#include "tessera/mesh_pieces.h"
+
+namespace tessera::inline abi_0_1 {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "PLY is written in the machine's own byte order");
+
+constexpr MeshRecord record_kinds[] = {MeshRecord::vertex, MeshRecord::triangle, MeshRecord::quad};
+
+template <class T>
+char* put(char* to, const T* values, std::size_t count) {
+  std::memcpy(to, values, count * sizeof(T));
+  return to + count * sizeof(T);
+}
+
+std::string header_text(const MeshTotals& totals) {
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment Tessera\nelement vertex ";
+  text += std::to_string(totals.vertices) + "\n";
+  const auto add = [&text](const char* type, std::initializer_list<const char*> names) {
+    for (const char* const name : names) text += std::string("property ") + type + name + "\n";
+  };
+  add(totals.double_positions ? "double " : "float ", {"x", "y", "z"});
+  if (totals.normals) add("float ", {"nx", "ny", "nz"});
+  if (totals.parameters) add("float ", {"u", "v"});
+  text +=
+      "element face " + std::to_string(totals.triangles + totals.quads) + "\nproperty list uchar int vertex_indices\n";
+  if (totals.patches) add("int ", {"patch"});
+  return text + "end_header\n";
+}
+
+std::uint64_t count_of(const MeshTotals& totals, MeshRecord kind) {
+  return kind == MeshRecord::vertex ? totals.vertices : kind == MeshRecord::triangle ? totals.triangles : totals.quads;
+}
+std::uint64_t count_of(const Mesh& mesh, MeshRecord kind) { return count_of(MeshTotals::of(mesh), kind); }
+std::uint64_t first_of(const PiecePlace& place, MeshRecord kind) {
+  return kind == MeshRecord::vertex     ? place.first_vertex
+         : kind == MeshRecord::triangle ? place.first_triangle
+                                        : place.first_quad;
+}
+
+void pack_vertices(const Mesh& mesh, std::size_t first, std::size_t last, char* to) {
+  const bool doubles = !mesh.positions_f64.empty(), normals = !mesh.normals.empty(),
+             parameters = !mesh.parameters.empty();
+  for (std::size_t k = first; k < last; ++k) {
+    if (doubles) {
+      to = put(to, mesh.positions_f64.data() + 3 * k, 3);
+    } else {
+      const float* const p = mesh.positions.data() + 3 * k;
+      put_floats(mesh.origin + Vec3{p[0], p[1], p[2]}, to);
+      to += 3 * sizeof(float);
+    }
+    if (normals) to = put(to, mesh.normals.data() + 3 * k, 3);
+    if (parameters) to = put(to, mesh.parameters.data() + 2 * k, 2);
+  }
+}
+
+/// Faces of `Corners` corners, with their patches if there are any.
+template <std::size_t Corners>
+void pack_faces(const PiecePlace& place, const std::vector<std::uint32_t>& indices,
+                const std::vector<std::uint32_t>* patches, std::size_t first, std::size_t last, char* to) {
+  const auto first_vertex = static_cast<std::uint32_t>(place.first_vertex),
+             first_patch = static_cast<std::uint32_t>(place.first_patch);
+  for (std::size_t k = first; k < last; ++k) {
+    std::array<std::uint32_t, Corners + 1> numbers{};
+    for (std::size_t c = 0; c < Corners; ++c) numbers[c] = first_vertex + indices[Corners * k + c];
+    if (patches) numbers[Corners] = first_patch + (*patches)[k];
+    *to++ = static_cast<char>(Corners);
+    to = put(to, numbers.data(), Corners + (patches ? 1 : 0));
+  }
+}
+
+/// Writes the records of a piece: at their places in the file, or after what was written last.
+Status write_records(const PlyLayout& layout, const Mesh& piece, const PiecePlace& place, bool at_places,
+                     OutputFile& out) {
+  for (const MeshRecord kind : record_kinds) {
+    const auto pack = [&](std::size_t first, std::size_t last, char* to) {
+      layout.pack(piece, place, kind, first, last, to);
+    };
+    std::optional<std::uint64_t> offset;
+    if (at_places) offset = layout.range(piece, place, kind).offset;
+    Status status = write_packed(out, count_of(piece, kind), layout.record_bytes(kind), pack, offset);
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+}  // namespace
+
+MeshTotals MeshTotals::of(const Mesh& mesh) {
+  return {.vertices = mesh.vertex_count(),
+          .triangles = mesh.triangle_count(),
+          .quads = mesh.quad_count(),
+          .normals = !mesh.normals.empty(),
+          .parameters = !mesh.parameters.empty(),
+          .patches = mesh.has_patches(),
+          .double_positions = !mesh.positions_f64.empty()};
+}
+
+PlyLayout::PlyLayout(const MeshTotals& totals) : totals_(totals), header_(header_text(totals)) {}
+
+Result<PlyLayout> PlyLayout::make(const MeshTotals& totals) {
+  return guarded([&]() -> Result<PlyLayout> {
+    constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
+    if (totals.vertices == 0) return Status(StatusCode::invalid_argument, "the mesh has no vertices");
+    if (totals.vertices > most)
+      return Status(StatusCode::unsupported, "the mesh has " + std::to_string(totals.vertices) +
+                                                 " vertices, a .ply file can index " + std::to_string(most) +
+                                                 ": write it in pieces, as .pvtp");
+    return PlyLayout(totals);
+  });
+}
+
+std::uint64_t PlyLayout::file_bytes() const {
+  std::uint64_t bytes = header_.size();
+  for (const MeshRecord kind : record_kinds) bytes += count_of(totals_, kind) * record_bytes(kind);
+  return bytes;
+}
+
+std::size_t PlyLayout::record_bytes(MeshRecord kind) const {
+  if (kind == MeshRecord::vertex)
+    return 3 * (totals_.double_positions ? sizeof(double) : sizeof(float)) +
+           sizeof(float) * ((totals_.normals ? 3 : 0) + (totals_.parameters ? 2 : 0));
+  const std::size_t corners = kind == MeshRecord::triangle ? 3 : 4;
+  return 1 + sizeof(std::uint32_t) * (corners + (totals_.patches ? 1 : 0));
+}
+
+ByteRange PlyLayout::range(const Mesh& piece, const PiecePlace& place, MeshRecord kind) const {
+  ByteRange range{header_.size() + first_of(place, kind) * record_bytes(kind),
+                  count_of(piece, kind) * record_bytes(kind)};
+  for (const MeshRecord before : record_kinds)
+    if (before < kind) range.offset += count_of(totals_, before) * record_bytes(before);
+  return range;
+}
+
+Status PlyLayout::check(const Mesh& piece, const PiecePlace& place) const {
+  return guarded([&]() -> Status {
+    const MeshTotals own = MeshTotals::of(piece);
+    if (Status status = validate_piece(piece, totals_); !status.ok()) return status;
+    for (const MeshRecord kind : record_kinds)
+      if (first_of(place, kind) > count_of(totals_, kind) ||
+          count_of(own, kind) > count_of(totals_, kind) - first_of(place, kind))
+        return {StatusCode::count_mismatch, "a piece of the mesh is not within the whole"};
+    return check_patches(piece, place.first_patch);
+  });
+}
+
+void PlyLayout::pack(const Mesh& piece, const PiecePlace& place, MeshRecord kind, std::size_t first, std::size_t last,
+                     char* to) const {
+  if (kind == MeshRecord::vertex) return pack_vertices(piece, first, last, to);
+  if (kind == MeshRecord::triangle)
+    return pack_faces<3>(place, piece.indices, totals_.patches ? &piece.patches : nullptr, first, last, to);
+  pack_faces<4>(place, piece.quads, totals_.patches ? &piece.quad_patches : nullptr, first, last, to);
+}
+
+Status write_ply(const Mesh& mesh, OutputFile& out) {
+  const Result<PlyLayout> layout = PlyLayout::make(MeshTotals::of(mesh));
+  if (!layout) return layout.status();
+  out.write(layout->header());
+  return write_records(*layout, mesh, {}, false, out);  // the file may be a pipe
+}
+
+Result<PlyPieces> PlyPieces::make(OutputFile out, const MeshTotals& totals) {
+  return guarded([&]() -> Result<PlyPieces> {
+    Result<PlyLayout> layout = PlyLayout::make(totals);
+    if (!layout) return Status(layout.status().code(), out.path().string() + ": " + layout.status().message());
+    out.write(layout->header());
+    return PlyPieces(std::move(out), *std::move(layout));
+  });
+}
+
+Status PlyPieces::write(const Mesh& piece, const PiecePlace& place) {
+  return guarded([&]() -> Status {
+    if (const Status status = layout_.check(piece, place); !status.ok())
+      return {status.code(), out_.path().string() + ": " + status.message(), status.index()};
+    if (Status status = write_records(layout_, piece, place, true, out_); !status.ok()) return status;
+    vertices_ += piece.vertex_count();
+    triangles_ += piece.triangle_count();
+    quads_ += piece.quad_count();
+    if (out_.failed() && failure_.ok()) failure_ = out_.commit();
+    return failure_;
+  });
+}
+
+Status PlyPieces::commit() {
+  return guarded([&]() -> Status {
+    const MeshTotals& totals = layout_.totals();
+    if (!failure_.ok()) return failure_;
+    if (!out_.failed() && (vertices_ != totals.vertices || triangles_ != totals.triangles || quads_ != totals.quads))
+      return {StatusCode::count_mismatch, out_.path().string() + ": the pieces have " + std::to_string(vertices_) +
+                                              " vertices and " + std::to_string(triangles_ + quads_) +
+                                              " faces, the mesh has " + std::to_string(totals.vertices) + " and " +
+                                              std::to_string(totals.triangles + totals.quads)};
+    return out_.commit();
+  });
+}
+
+}  // namespace tessera::inline abi_0_1
