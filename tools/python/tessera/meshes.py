@@ -293,7 +293,8 @@ class Mesh:
         parts += [f"normals within {self.angle:.3g} rad"] * (self.angle > 0)
         parts += [f"within {self.pixels:.3g} pixels"] * (self.pixels > 0)
         proven = ", ".join(parts) if self.is_proven else "unproven"
-        return f"<Mesh {len(self.vertices):,} vertices, {len(self.faces):,} triangles{quads}, {proven}>"
+        triangles = f"{len(self.faces):,} triangle{'s' * (len(self.faces) != 1)}"
+        return f"<Mesh {len(self.vertices):,} vertices, {triangles}{quads}, {proven}>"
 
     def _repr_html_(self) -> str:
         from .view import html_of

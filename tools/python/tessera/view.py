@@ -6,53 +6,90 @@ import base64
 import html
 import json
 import pathlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from .errors import ArgumentError
 
 if TYPE_CHECKING:
     from .meshes import Mesh
     from .patches import PatchSet
 
-#: Triangles of a view; of larger meshes it shows as good a mesh as so many triangles make.
+#: Triangles of a view. A larger mesh is shown by another one of its patches, or simplified.
 MAX_TRIANGLES = 50_000
+#: The distance of the mesh of a patch set: less than a pixel of the view.
+_SHARE = 5e-4
 
 
 def html_of(shown: Mesh | PatchSet) -> str:
     """Returns a frame that shows a mesh, or a mesh of patches; at most 2 MB."""
     from .meshes import Mesh
 
-    mesh, note = (shown, "") if isinstance(shown, Mesh) else (shown.tessellate(max_triangles=MAX_TRIANGLES), "")
-    if len(mesh.triangles()) > MAX_TRIANGLES and mesh._set is not None:
-        mesh = mesh._set.tessellate(max_triangles=MAX_TRIANGLES)
+    mesh: Any = shown
+    note = ""
+    if not isinstance(shown, Mesh):
+        mesh = _mesh_of(shown)
+    elif len(shown.triangles()) > MAX_TRIANGLES and shown._set is not None:
+        mesh = _mesh_of(shown._set)
         note = f"; shown with {len(mesh.faces):,} triangles, within {mesh.bound:.3g}"
-    page = page_of(mesh, repr(shown)[1:-1] + note)
+    vertices, faces, normals = np.asarray(mesh.vertices, np.float64), mesh.triangles(), mesh.normals
+    if len(faces) > MAX_TRIANGLES:
+        vertices, faces, normals = *_clustered(vertices, faces), None
+        note = f"; shown simplified, with {len(faces):,} triangles"
+    normals = _normals(vertices, faces) if normals is None else normals
+    page = page_of(vertices, faces, normals, repr(shown)[1:-1] + note)
     return (
         f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" title="{html.escape(repr(shown))}" '
         'style="width: 100%; height: 420px; border: 1px solid #ddd"></iframe>'
     )
 
 
-def page_of(mesh: Mesh, caption: str) -> str:
-    """Returns a page that shows a mesh."""
-    vertices = np.asarray(mesh.vertices, np.float64)
+def page_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, caption: str) -> str:
+    """Returns a page that shows triangles."""
     low = vertices.min(axis=0) if len(vertices) else np.zeros(3)
     size = vertices.max(axis=0) - low if len(vertices) else np.zeros(3)
     scale = np.linalg.norm(size) or 1.0
-    faces = mesh.triangles()
     positions = np.round((vertices - low) / np.where(size > 0, size, 1) * 65535).astype(np.uint16)
-    normals = _octahedral(_normals(vertices, faces) if mesh.normals is None else mesh.normals)
     is_wide = len(vertices) > 65536
     data = {
         "count": int(faces.size),
         "wide": is_wide,
         "half_size": (size / scale).tolist(),
         "positions": _text(positions),
-        "normals": _text(normals),
+        "normals": _text(_octahedral(normals)),
         "faces": _text(faces.astype(np.uint32 if is_wide else np.uint16)),
     }
     template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
     return template.replace("@CAPTION@", html.escape(caption)).replace("@DATA@", json.dumps(data))
+
+
+def _mesh_of(patches: PatchSet) -> Mesh:
+    """Returns a mesh that is fine enough for the view, or as fine as its triangles allow, or the coarsest of all."""
+    for limits in ({"tolerance": _SHARE, "relative": True}, {}):
+        try:
+            return patches.tessellate(max_triangles=MAX_TRIANGLES, **limits)  # type: ignore[arg-type]
+        except ArgumentError:  # it takes more triangles
+            pass
+    return patches.tessellate(rates=1)
+
+
+def _clustered(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns fewer vertices and triangles: those that differ after vertices of a cell are one (Rossignac and Borrel,
+    Multi-resolution 3D approximations for rendering complex scenes, 1993)."""
+    low = vertices.min(axis=0)
+    size = (vertices.max(axis=0) - low).max() or 1.0
+    cells = 512
+    while True:
+        cell = np.floor((vertices - low) / size * cells).astype(np.int64) @ [1, 1 << 20, 1 << 40]
+        _, index, count = np.unique(cell, return_inverse=True, return_counts=True)
+        few = np.sort(index[faces], axis=1)
+        first = np.unique(few, axis=0, return_index=True)[1]
+        kept = first[(few[first, 0] < few[first, 1]) & (few[first, 1] < few[first, 2])]
+        if len(kept) <= MAX_TRIANGLES:
+            sums = np.stack([np.bincount(index, vertices[:, axis]) for axis in range(3)], axis=1)
+            return sums / count[:, None], index[faces[kept]]
+        cells = cells * 3 // 4
 
 
 def _text(array: np.ndarray) -> str:

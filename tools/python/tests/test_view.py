@@ -56,6 +56,29 @@ def test_larger_meshes_are_shown_with_fewer_triangles(goblet):
     assert data["count"] <= 150_000 and f"{len(mesh.faces):,} triangles" in page and "shown with" in page
 
 
+def test_sets_of_more_patches_than_triangles_are_simplified():
+    for patches in (ts.bezier(wavy(170, 170, 1)).patches(), ts.bezier(1e6 + wavy(170, 170, 1)).patches()):
+        for shown in (patches, patches.tessellate(rates=2)):
+            text = shown._repr_html_()
+            page, data = data_of(text)
+            assert 30_000 < data["count"] / 3 <= 50_000 and "shown simplified" in page and len(text) <= 2_000_000
+            assert max(data["half_size"]) < 0.71  # the box of the field, and its slightly smaller simplification
+
+
+def test_views_of_small_things():
+    triangle = ts.bezier([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 0, 0]]]).patches().tessellate(rates=1)
+    page, data = data_of(triangle._repr_html_())
+    assert data["count"] == 3 and " 1 triangle, " in page
+    data_of(ts.bezier(np.zeros((2, 2, 3)))._repr_html_())
+
+
+def test_a_part_is_shown_soon(sources):
+    """At a distance that suits the view, and not at the smallest one of so many triangles, which must be searched."""
+    patches = ts.read(str(sources / "tools/models/trimmed_torus.json")).patches()
+    _, data = data_of(patches._repr_html_())
+    assert 1_000 < data["count"] / 3 < 20_000
+
+
 def test_views_of_models_sets_and_meshes_without_normals(goblet):
     assert "PatchSet 44 patches" in data_of(goblet._repr_html_())[0]
     shared = goblet.patches().tessellate(1e-2, share_vertices=True, quads=True)
