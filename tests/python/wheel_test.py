@@ -113,3 +113,13 @@ def test_it_works_in_another_folder(python, site, tmp_path):
     for name in ("libtessera_c", "libtbb", "libembree"):
         of_name = [file for file in found["libraries"] if pathlib.Path(file).name.startswith(name)]
         assert of_name and all(pathlib.Path(file).parent == site / "tessera/lib" for file in of_name)
+
+
+@pytest.mark.parametrize("first", ["tessera", "open3d"])
+def test_beside_the_libraries_of_open3d(python, tmp_path, first):
+    program = SOURCES / "tools/python/tests/beside_open3d.py"
+    if subprocess.run([str(python), "-c", "import open3d"], env=CLEAN, stderr=subprocess.DEVNULL).returncode != 0:
+        pytest.skip("there is no Open3D")
+    libraries = output_of(str(python), str(program), first, str(MODELS / "goblet.json"), cwd=tmp_path).split()
+    assert sum(name.startswith("libtbb") for name in libraries) >= 2, libraries
+    assert sum(name.endswith("-tessera.so") or "-tessera.so." in name for name in libraries) == 2, libraries

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,26 @@ def array_of(name: str, value: Any, dtype: Any = np.float64) -> np.ndarray:
     if wanted.kind == "u" and array.size and (array.min() < 0 or array.max() > np.iinfo(wanted).max):
         raise ArgumentError(f"{name}: expected numbers from 0 to {np.iinfo(wanted).max}")
     return array.astype(wanted)
+
+
+def pair_of(name: str, value: Any) -> tuple[int, int]:
+    """Returns two integers, one per direction, of one or two."""
+    try:
+        first, second = value if np.ndim(value) else (value, value)
+        return operator.index(first), operator.index(second)
+    except (TypeError, ValueError):
+        raise ArgumentTypeError(f"{name}: expected an integer or one per direction, found {value!r}") from None
+
+
+def names_of(quantities: Any) -> list[str]:
+    """Returns the names of quantities, of one name or several."""
+    return [quantities] if isinstance(quantities, str) else list(quantities)
+
+
+def check_out(out: Any, kind: type) -> None:
+    """Raises an error if ``out`` is something else."""
+    if not isinstance(out, kind):
+        raise ArgumentTypeError(f"out: expected {kind.__name__}, found {type(out).__name__}")
 
 
 def vectors_of(name: str, value: Any, dtype: Any = np.float64, components: int = 3) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import array_of, in_view, out_view, records_of
+from ._arrays import array_of, check_out, in_view, names_of, out_view, records_of
 from ._calls import run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -93,7 +93,7 @@ def _new_jets(shape: tuple[int, ...], dtype: Any, derivatives: int, quantities: 
             raise ArgumentError(f"derivatives is {derivatives}, expected 0, 1 or 2")
         quantities = _ORDERS[derivatives]
     arrays = {}
-    for name in quantities:
+    for name in names_of(quantities):
         components = QUANTITIES.get(name)
         if components is None:
             raise ArgumentError(f"{name!r} is no quantity; there are {', '.join(QUANTITIES)}")
@@ -102,6 +102,7 @@ def _new_jets(shape: tuple[int, ...], dtype: Any, derivatives: int, quantities: 
 
 
 def _jets_out(jets: Jets, shape: tuple[int, ...], dtype: Any) -> Any:
+    check_out(jets, Jets)
     out = struct("tsr_jets")
     dtype = np.dtype(dtype)
     out.is_double = dtype == np.float64

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, out_view, vectors_of
+from ._arrays import address_of, out_view, pair_of, vectors_of
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError, StateError
@@ -84,10 +84,12 @@ def _fill(options: Any, wanted: dict[str, Any]) -> None:
     limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap", "max_triangles")
     for name in limits:
         if wanted[name] is not None:
-            setattr(options, name, wanted[name])
+            try:
+                setattr(options, name, wanted[name])
+            except TypeError:
+                raise ArgumentTypeError(f"{name}: expected a number, found {wanted[name]!r}") from None
     if wanted["rates"] is not None:
-        rates = wanted["rates"]
-        options.rate_u, options.rate_v = (rates, rates) if isinstance(rates, int) else rates
+        options.rate_u, options.rate_v = pair_of("rates", wanted["rates"])
     is_limited = any(wanted[name] is not None for name in ("tolerance", "angle", "pixels", "rates"))
     flags = {
         _RELATIVE: wanted["relative"],

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of
+from ._arrays import address_of, array_of, pair_of
 from ._calls import Handle, call, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError, FileError
@@ -162,11 +162,11 @@ class Model(Handle):
         if isinstance(key, str):
             names = self.names
             if key not in names:
-                raise KeyError(f"no surface is named {key!r}; there are {_shown(names)}")
+                raise KeyError(f"no surface is named {key!r}; there {_listed(names)}")
             return Surface(self, names.index(key))
         count, index = len(self), int(key)
         if not -count <= index < count:
-            raise IndexError(f"surface {index} is none, the model has {count}")
+            raise IndexError(f"there is no surface {index}, the model has {count}")
         return Surface(self, index % count)
 
     def __iter__(self) -> Iterator[Surface]:
@@ -190,7 +190,7 @@ class Model(Handle):
         """
         if isinstance(shape, str):
             if shape not in self.shapes:
-                raise KeyError(f"no shape is named {shape!r}; there are {_shown(self.shapes)}")
+                raise KeyError(f"no shape is named {shape!r}; there {_listed(self.shapes)}")
             shape = self.shapes.index(shape)
         return PatchSet(self, shape=shape, whole=whole, fit_tolerance=fit_tolerance, double=double)
 
@@ -235,6 +235,11 @@ def _counted(count: int, noun: str) -> str:
 def _shown(names: list[str], more: int = 0) -> str:
     more += max(len(names) - 5, 0)
     return ", ".join(map(repr, names[:5])) + (f" and {more:,} more" if more > 0 else "")
+
+
+def _listed(names: list[str]) -> str:
+    named = list(filter(None, names))
+    return f"{'is' if len(named) == 1 else 'are'} {_shown(named)}" if named else "are no names"
 
 
 def _unchanged(path: str, stamp: tuple[int, int]) -> bytes:
@@ -304,11 +309,9 @@ def _fill(to: Any, spline: Spline, kept: list[Any]) -> None:
     degree = spline.degree
     if degree is None and spline.knots is None:
         degree = (points.shape[0] - 1, points.shape[1] - 1)
-    elif isinstance(degree, int):
-        degree = (degree, degree)
     if degree is None:
         raise ArgumentTypeError("degree: expected one beside the knots")
-    to.degree_u, to.degree_v = degree
+    to.degree_u, to.degree_v = pair_of("degree", degree)
     if spline.name:
         to.name = spline.name.encode()
 

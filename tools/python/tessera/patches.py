@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of
+from ._arrays import address_of, array_of, check_out
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -112,7 +112,7 @@ class PatchSet(Handle):
 
     def __getitem__(self, index: int) -> Patch:
         if not -self._count <= index < self._count:
-            raise IndexError(f"patch {index} is none, the set has {self._count}")
+            raise IndexError(f"there is no patch {index}, the set has {self._count}")
         return Patch(self, index % self._count)
 
     def __iter__(self) -> Iterator[Patch]:
@@ -207,6 +207,7 @@ class PatchSet(Handle):
         for name in ("self", "out", "progress"):
             del wanted[name]
         mesh = Mesh() if out is None else out
+        check_out(mesh, Mesh)
         mesh._make(self, wanted, progress)
         return mesh
 

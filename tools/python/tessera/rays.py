@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, in_view, out_view, records_of, vectors_of
+from ._arrays import address_of, array_of, check_out, in_view, names_of, out_view, records_of, vectors_of
 from ._calls import Handle, call, run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -71,7 +71,7 @@ class Hits:
         """Returns arrays to write to."""
         shape = (shape,) if isinstance(shape, int) else tuple(shape)
         arrays = {}
-        for name in _USUAL if quantities is None else quantities:
+        for name in _USUAL if quantities is None else names_of(quantities):
             if name not in QUANTITIES:
                 raise ArgumentError(f"{name!r} is no quantity; there are {', '.join(QUANTITIES)}")
             components, dtype = QUANTITIES[name]
@@ -99,7 +99,8 @@ class Hits:
     def __repr__(self) -> str:
         if self.kind is None:
             return f"<Hits {', '.join(self.__dict__)}>"
-        return f"<Hits of {self.kind.size:,} rays: {np.count_nonzero(self.is_hit):,} hits>"
+        rays, hits = self.kind.size, np.count_nonzero(self.is_hit)
+        return f"<Hits of {rays:,} ray{'s' * (rays != 1)}: {hits:,} hit{'s' * (hits != 1)}>"
 
     def _struct(self, shape: tuple[int, ...]) -> Any:
         out = struct("tsr_hits_out")
@@ -203,6 +204,7 @@ class Scene(Handle):
         """Returns the closest hit of each ray. ``quantities``: which; ``out``: where to write to."""
         rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
         hits = Hits.empty(rays.shape, quantities) if out is None else out
+        check_out(hits, Hits)
         to = hits._struct(rays.shape)
         self._run(library.tsr_scene_closest, rays, to)
         return hits

@@ -1,5 +1,7 @@
 """Points of surfaces: broadcasting, memory of the caller, bad arrays."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -127,3 +129,28 @@ def test_dlpack_shares_memory(surface):
             return self.array.__dlpack_device__()
 
     assert (surface.evaluate(Other(np.zeros(4)), 0.5).position == position).all()
+
+
+@pytest.mark.parametrize(
+    "call, message",
+    [
+        (lambda m, p: m[0].evaluate(0.5, 0.5, out=np.zeros(3)), "out: expected Jets, found ndarray"),
+        (lambda m, p: p.rays().closest([0, 0, 9], [0, 0, -1], out=ts.Jets()), "out: expected Hits, found Jets"),
+        (lambda m, p: p.tessellate(1e-2, out=p), "out: expected Mesh, found PatchSet"),
+        (lambda m, p: p.tessellate("fine"), "tolerance: expected a number, found 'fine'"),
+        (lambda m, p: p.tessellate(rates="x"), "rates: expected an integer or one per direction, found 'x'"),
+        (lambda m, p: p.tessellate(rates=(1, 2, 3)), "rates: expected an integer"),
+        (lambda m, p: ts.bezier(wavy(1, 1)[0].astype(str)), "points: expected float64 numbers"),
+        (lambda m, p: ts.nurbs(degree="2", knots=([0, 1],) * 2, points=np.zeros((3, 3, 3))), "degree: expected an"),
+    ],
+)
+def test_wrong_types_are_named(call, message):
+    model = ts.bezier(wavy(1, 1)[0])
+    with pytest.raises(ts.ArgumentTypeError, match=re.escape(message)):
+        call(model, model.patches())
+
+
+def test_a_quantity_may_be_one_name_and_rates_integers_of_numpy(surface):
+    assert surface.evaluate(0.5, 0.5, quantities="mean").quantities == ["mean"]
+    patches = surface.model.patches()
+    assert len(patches.tessellate(rates=np.int64(4)).faces) == len(patches.tessellate(rates=(4, 4)).faces) == 32

@@ -19,9 +19,9 @@ def test_names_and_kinds(goblet):
 
 
 def test_unknown_names_say_which_there_are(goblet):
-    with pytest.raises(KeyError, match="'bowl'; there are 'goblet'"):
+    with pytest.raises(KeyError, match="'bowl'; there is 'goblet'"):
         goblet["bowl"]
-    with pytest.raises(IndexError, match="surface 1 is none, the model has 1"):
+    with pytest.raises(IndexError, match="there is no surface 1, the model has 1"):
         goblet[1]
     assert goblet[-1].name == "goblet"
 

@@ -1,6 +1,11 @@
 """Rays against a sphere and a field, whose hits are known."""
 
+import importlib.util
+import os
+import pathlib
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -113,3 +118,12 @@ def test_a_scene_keeps_its_patches_and_is_pickled():
     copy = pickle.loads(pickle.dumps(scene))
     assert copy.closest([0.5, 0.5, 9], [0, 0, -1]).t == wanted.t
     assert scene.box.shape == (2, 3) and scene.spawn_offset > 0
+
+
+@pytest.mark.skipif(importlib.util.find_spec("open3d") is None, reason="there is no Open3D")
+@pytest.mark.parametrize("first", ["tessera", "open3d"])
+def test_beside_open3d(first):
+    """In a process of its own: Open3D stays in it."""
+    program = pathlib.Path(__file__).with_name("beside_open3d.py")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    subprocess.run([sys.executable, program, first, model_file("goblet.json")], env=environment, check=True)
