@@ -38,14 +38,6 @@ Result<Mesh> run_plan(const Tessellation& plan, const PatchSet& set) {
   return mesh;
 }
 
-TessellationOptions plan_options(const TessellateOptions& options) {
-  if (options.grid) return {.rates = UniformRates{options.grid->first, options.grid->second}, .quads = options.quads};
-  TessellationOptions certified = options.certified;
-  certified.quads = options.quads;
-  if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
-  return certified;
-}
-
 /// A set that is meshed once and seen `count` times, at most `stretch` times as large.
 struct SetUse {
   const PatchSet& set;
@@ -223,6 +215,14 @@ bool is_even(const Affine& placement) {
 }
 
 }  // namespace
+
+TessellationOptions plan_options(const TessellateOptions& options) {
+  if (options.grid) return {.rates = UniformRates{options.grid->first, options.grid->second}, .quads = options.quads};
+  TessellationOptions certified = options.certified;
+  certified.quads = options.quads;
+  if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
+  return certified;
+}
 
 bool allows_shapes(const TessellateOptions& options) { return options.pixels == 0 && !options.certified.smallest; }
 

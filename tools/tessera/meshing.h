@@ -31,6 +31,8 @@ struct Meshed {
   bool proven = true;  ///< false if sampled: callables fitted without bounds on their derivatives
 };
 
+/// Returns the options of the library that the command line's stand for.
+TessellationOptions plan_options(const TessellateOptions& options);
 /// Whether the options let a shape be meshed once for all its instances. A budget of triangles is one for the whole
 /// model, and pixels depend on where an instance stands: these need one set of all surfaces.
 bool allows_shapes(const TessellateOptions& options);

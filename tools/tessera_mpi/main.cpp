@@ -35,7 +35,8 @@ void describe_tool(Command& tool) {
       "\nExamples:\n"
       "  mpirun -n 4 tessera_mpi raycast teapot.bpt -o teapot.png --size 3840x2160\n"
       "  mpirun -n 4 tessera_mpi eval goblet.json --grid 1000x1000 -o points.csv\n"
-      "  mpirun -n 4 tessera_mpi raycast goblet.json --rays rays.csv --hits hits.csv --data-parallel";
+      "  mpirun -n 4 tessera_mpi raycast goblet.json --rays rays.csv --hits hits.csv --data-parallel\n"
+      "  mpirun -n 4 tessera_mpi tessellate sheet.bpt -o sheet.pvtp --tolerance 0.01";
 }
 
 /// A rank cannot end its job alone, so a signal ends it at once; mpirun then ends the others.
@@ -84,6 +85,7 @@ int run(int argc, char** argv, MpiTeam& team) {
   tool.add_help();
   add_eval(tool, session);
   add_raycast(tool, session);
+  add_tessellate_by_ranks(tool, session, team);
   Parsed parsed;
   Status usage;
   try {
@@ -99,7 +101,7 @@ int run(int argc, char** argv, MpiTeam& team) {
   if (parsed.help) return print(help_text(tool, parsed.command ? *parsed.command : tool)).ok() ? success : bad_input;
   if (version) return print("tessera_mpi " TESSERA_VERSION "\n").ok() ? success : bad_input;
   if (session.command) return run_command(session);
-  complain("expected a command (eval or raycast), found none" + std::string(hint));
+  complain("expected a command (eval, raycast or tessellate), found none" + std::string(hint));
   return bad_command_line;
 }
 

@@ -81,6 +81,15 @@ Status MpiTeam::end_job(const Status& own) {
   return own.ok() ? all : own;
 }
 
+Result<std::string> MpiTeam::text_of_leader(const std::string& text) {
+  std::vector<Message> messages(transport_->part_count());
+  const auto bytes = std::as_bytes(std::span(text));
+  if (leads()) std::ranges::fill(messages, Message(bytes.begin(), bytes.end()));
+  const Result<std::vector<Message>> all = transport_->exchange(std::move(messages));
+  if (!all) return all.status();
+  return std::string(reinterpret_cast<const char*>(all->front().data()), all->front().size());
+}
+
 PartRun MpiTeam::run_of(std::size_t patches) const {
   return run_of_part(patches, transport_->part(), transport_->part_count());
 }

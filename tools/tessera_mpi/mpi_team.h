@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.h"
 #include "team.h"
 #include "tessera/mpi.h"
 #include "tessera/status.h"
@@ -17,6 +18,9 @@ class MpiTeam final : public Team {
   /// Errors: those of make_mpi_transport().
   static Result<std::unique_ptr<MpiTeam>> make();
 
+  Transport& transport() { return *transport_; }
+  /// Returns the leader's text in every rank. Errors: those of Transport::exchange().
+  Result<std::string> text_of_leader(const std::string& text);
   bool leads() const override { return transport_->part() == 0; }
   Result<render::Image> draw(const RayScene& scene, const Box3& box, const render::Settings& settings,
                              const Execution& execution) override;
@@ -38,6 +42,9 @@ class MpiTeam final : public Team {
   std::unique_ptr<Transport> transport_;
   bool job_has_failed_ = false;  ///< all know it
 };
+
+/// Adds `tessellate`, whose ranks are the parts of a model.
+void add_tessellate_by_ranks(Command& tool, Session& session, MpiTeam& team);
 
 /// Prints an error that the other ranks do not know, and ends them all.
 [[noreturn]] void end_all_ranks(const Status& status);

@@ -62,6 +62,9 @@ class OutputFile {
 
   /// The final place of the file.
   const std::filesystem::path& path() const { return target_; }
+  /// The file that is written, until commit() gives it its place; empty if the place is written directly. For other
+  /// processes that write parts of it.
+  std::filesystem::path temporary() const;
   /// Whether any write has failed: a long writer may stop early.
   bool failed() const { return !status_.ok(); }
   /// Writes the buffer, closes, renames. Call it once, last. Errors: io_error, cancelled.

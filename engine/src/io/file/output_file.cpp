@@ -269,6 +269,10 @@ void OutputFile::see_cancel() {
     status_ = guarded([] { return Status(StatusCode::cancelled, "cancelled by the caller"); });
 }
 
+fs::path OutputFile::temporary() const {
+  return !destination_ || destination_->temporary.empty() ? fs::path() : fs::path(destination_->temporary.c_str());
+}
+
 Status OutputFile::commit() {
   flush();
   see_cancel();

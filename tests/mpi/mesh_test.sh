@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# tessera_mpi tessellate on several ranks: the mesh of tessera byte for byte, or an error of all and no file.
+#   mesh_test.sh MPIEXEC TESSERA TESSERA_MPI MODELS
+set -euo pipefail
+
+mpiexec=$1 tessera=$2 tessera_mpi=$3 models=$4
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+cd "$place"
+
+fail() {
+  printf '%s\n' "$*" >&2
+  exit 1
+}
+# on RANKS ARGUMENTS...: the program must succeed.
+on() {
+  local ranks=$1
+  shift
+  timeout 120 "$mpiexec" -n "$ranks" "$tessera_mpi" tessellate "$@" >report 2>errors ||
+    fail "$ranks ranks, $*: $(cat report errors)"
+}
+# fails_on RANKS ARGUMENTS...: the program must fail, say it once and leave nothing.
+fails_on() {
+  local ranks=$1
+  shift
+  ! timeout 120 "$mpiexec" -n "$ranks" "$tessera_mpi" tessellate "$@" >report 2>errors || fail "$*: it has not failed"
+  [[ -z $(find . -name 'failed*') ]] || fail "$*: the failed program has left $(find . -name 'failed*')"
+}
+
+# One file: patches that ranks read run by run, whole models, loops, quads, doubles; more ranks than patches.
+meshes() {
+  "$tessera" tessellate "$@" -o one.ply >/dev/null 2>&1
+  for ranks in 1 2 3 4 7; do
+    on $ranks "$@" -o many.ply
+    cmp one.ply many.ply || fail "$ranks ranks, $*: not the mesh of one process"
+  done
+}
+meshes "$models/teapot.bpt" --relative 1e-3
+meshes "$models/teapot.bpt" --relative 1e-4 --quads --angle 10
+meshes "$models/goblet.json" --tolerance 1e-3 --precision double
+meshes "$models/trimmed_crossing_cylinders.json" --tolerance 1e-3
+meshes "$models/sphere.json" --grid 5x3
+grep -q 'triangles, within .* of the surfaces, proven, by 7 ranks' report || [[ $(cat report) == *'by 7 ranks'* ]] ||
+  fail "the report is $(cat report)"
+
+# A CAD file: its instances as one mesh, the same for any number of ranks.
+if [[ -n ${TESSERA_TEST_DATA:-} ]] && part=$(find "$TESSERA_TEST_DATA" -name 'as1-oc-214.stp') && [[ -n $part ]] &&
+  "$tessera" info "$part" >/dev/null 2>&1; then
+  on 1 "$part" --relative 1e-3 -o one.ply
+  for ranks in 2 5; do
+    on $ranks "$part" --relative 1e-3 -o many.ply
+    cmp one.ply many.ply || fail "$ranks ranks: another mesh of $part"
+  done
+fi
+
+# A piece for each rank, with an index.
+on 3 "$models/teapot.bpt" --relative 1e-3 -o pieces.pvtp
+[[ $(grep -c '<Piece Source="pieces_000[0-2].vtp"' pieces.pvtp) == 3 ]] || fail "the index is $(cat pieces.pvtp)"
+for piece in 0 1 2; do
+  [[ -s pieces_000$piece.vtp ]] || fail "piece $piece is missing"
+done
+
+# Failures: of all, of one rank, of the disk, of the command line.
+fails_on 3 missing.bpt -o failed.ply
+[[ $(grep -c missing.bpt errors) == 1 ]] || fail "an error of all ranks is said once: $(cat errors)"
+head -c 900 "$models/teapot.bpt" >cut.bpt
+fails_on 3 cut.bpt -o failed.ply
+grep -q 'cut.bpt:[0-9]' errors || fail "the error names no line: $(cat errors)"
+fails_on 2 "$models/teapot.bpt" --tolerance 1e-12 -o failed.ply
+grep -q 'part [01]: ' errors || fail "the error names no part: $(cat errors)"
+fails_on 2 "$models/teapot.bpt" --relative 1e-3 --fewest -o failed.ply
+fails_on 2 "$models/teapot.bpt" --relative 1e-3 -o failed.stl
+(
+  ulimit -f 200
+  fails_on 3 "$models/teapot.bpt" --relative 1e-5 -o failed.ply
+  fails_on 3 "$models/teapot.bpt" --relative 1e-5 -o failed.pvtp
+)
+status=0
+timeout 60 "$mpiexec" -n 2 "$tessera_mpi" tessellate "$models/teapot.bpt" -o failed.ply : \
+  -n 1 "$tessera_mpi" tessellate missing.bpt -o failed.ply >report 2>errors || status=$?
+((status != 0)) && [[ -z $(find . -name 'failed*') ]] || fail "one rank failed: $status, $(find . -name 'failed*')"
+grep -q 'part 2: missing.bpt' errors || fail "the message of the rank that failed: $(cat errors)"

@@ -1,0 +1,204 @@
+// tessera_mpi tessellate: each rank meshes a part of a model.
+
+#include <algorithm>
+#include <memory>
+
+#include "commands.h"
+#include "loading.h"
+#include "meshing.h"
+#include "output.h"
+#include "tessera/io.h"
+#include "tessera/part_mesh.h"
+#include "tessera/surface_file.h"
+#include "tessera/topology.h"
+#include "tessera_mpi/mpi_team.h"
+#include "topology_facts.h"
+
+namespace tessera::cli {
+namespace {
+
+constexpr double default_share = 1e-3;
+
+/// Names the edges that faces share: those that the file states, and those that run side by side.
+Status join_faces(Model& model, const ModelOptions& options) {
+  if (options.untrimmed)
+    for (ModelSurface& surface : model.surfaces) surface.trims = {};
+  const auto is_trimmed = [](const ModelSurface& surface) { return !surface.trims->empty(); };
+  if (options.untrimmed || (model.instances.empty() && std::ranges::none_of(model.surfaces, is_trimmed))) {
+    model.shapes.clear(), model.instances.clear();
+    return {};
+  }
+  if (model.instances.empty()) {
+    Shape all;
+    for (const ModelSurface& surface : model.surfaces) all.faces.push_back({surface});
+    model.shapes = {std::move(all)};
+    model.instances = {{}};
+  }
+  for (Shape& shape : model.shapes) {
+    const Result<std::optional<JoinedShape>> joined = joined_if_free(shape);
+    if (joined && *joined) shape = (*joined)->shape;
+  }
+  Result<std::vector<ModelSurface>> surfaces = placed_faces(model.shapes, model.instances);
+  if (surfaces) model.surfaces = *std::move(surfaces);
+  return surfaces.status();
+}
+
+/// Takes this rank's part of a model that each rank reads whole.
+Result<ModelPart> part_of_whole(const Job& job, const TessellateOptions& options, Timings& timings,
+                                const Transport& transport) {
+  Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
+  if (!loaded) return loaded.status();
+  if (Status status = join_faces(loaded->model, options.models); !status.ok()) return status;
+  const Result<SurfaceExtents> extents = surface_extents(loaded->model, options.models.fit);
+  if (!extents) return extents.status();
+  const SurfaceRun run = even_run(loaded->model.surfaces.size(), transport.part(), transport.part_count());
+  return part_of(loaded->model, *extents, run.first, run.end, part_reach(options.certified, extents->box()));
+}
+
+/// Reads this rank's part of a file of patches, and what is around it. Every rank returns at the same stage.
+Result<ModelPart> part_of_file(const Job& job, const TessellateOptions& options, Transport& transport) {
+  const Result<SurfaceFile> file = SurfaceFile::open(job.inputs[0]);
+  if (Status status = transport.agree(file.status()); !status.ok()) return status;
+  const SurfaceSource source{file->size(), [&](std::uint64_t first, std::uint64_t end) {
+                               return file->read(static_cast<std::size_t>(first), static_cast<std::size_t>(end));
+                             }};
+  const SurfaceRun run = even_run(source.count, transport.part(), transport.part_count());
+  const Result<PartOutline> outline = find_part(source, run, options.certified, transport, options.models.fit);
+  if (!outline) return outline.status();
+  return load_part(source, *outline);
+}
+
+MeshTotals totals_of(const PartSums& sums, bool double_positions) {
+  return {sums.all.vertices, sums.all.triangles, sums.all.quads, true, true, true, double_positions};
+}
+
+/// Writes one .ply file; the leader's `out` is it.
+Status write_ply(const PartMesh& own, const PartSums& sums, const MeshTotals& totals, OutputFile& out, MpiTeam& team) {
+  const Result<PlyLayout> layout = PlyLayout::make(totals);
+  if (!layout) return layout.status();
+  const Result<std::string> file = team.text_of_leader(out.temporary().string());
+  if (!file) return file.status();
+  const PiecePlace place{sums.before.vertices, sums.before.triangles, sums.before.quads, sums.before.patches};
+  return team.transport().agree(write_ply_piece(MPI_COMM_WORLD, *file, *layout, own.mesh, place));
+}
+
+Status write_vtp(const PartMesh& own, const PartSums& sums, const MeshTotals& totals, const std::string& index,
+                 MpiTeam& team) {
+  Transport& transport = team.transport();
+  const Status written =
+      transport.agree(write_vtp_piece(own.mesh, totals, index, transport.part(), sums.before.patches));
+  if (!written.ok() || !team.leads()) return written;
+  return write_pvtp(totals, index, transport.part_count());
+}
+
+Status report(const Job& job, const CommonOptions& common, const PartSums& sums, const Transport& transport,
+              const Timings& timings) {
+  if (!common.json)
+    return print_report(job.output, job.output + ": " + counted(sums.all.vertices, "vertex", "vertices") + ", " +
+                                        counted(sums.all.triangles + 2 * sums.all.quads, "triangle") + ", within " +
+                                        readable(sums.bound, 3) + " of the surfaces" +
+                                        (sums.certified ? ", proven" : "") + ", by " +
+                                        counted(transport.part_count(), "rank") + "\n");
+  Json object{{"output", job.output},
+              {"models", job.inputs},
+              {"ranks", transport.part_count()},
+              {"patches", sums.all.patches},
+              {"vertices", sums.all.vertices},
+              {"triangles", sums.all.triangles},
+              {"quads", sums.all.quads},
+              {"bound", sums.bound},
+              {"certified", sums.certified},
+              {"gap", sums.gap},
+              {"bytes_sent", transport.bytes_sent()}};
+  add_seconds(object, common, timings);
+  return print_report(job.output, object.text() + "\n");
+}
+
+bool is_ply(const std::string& path) { return lower_extension(path) == ".ply"; }
+
+/// Whether ranks read runs of a file, instead of all of it.
+bool reads_runs(const std::string& path) { return lower_extension(path) == ".bpt"; }
+
+Status mesh_together(const Job& job, const TessellateOptions& options, const CommonOptions& common, MpiTeam& team,
+                     Timings& timings) {
+  Transport& transport = team.transport();
+  Result<OutputFile> out = open_output(is_ply(job.output) ? job.output : "/dev/null", &team);
+  if (Status status = transport.agree(out.status()); !status.ok()) return status;
+  Result<ModelPart> part = reads_runs(job.inputs[0]) ? part_of_file(job, options, transport)
+                                                     : part_of_whole(job, options, timings, transport);
+  if (Status status = transport.agree(part.status()); !status.ok()) return status;
+  const Result<PartMesh> own = [&] {
+    const auto phase = timings.phase("mesh");
+    return tessellate_part(*part, options.certified, {}, options.models.fit);
+  }();
+  const Result<PartSums> sums = sum_parts(own, options.certified, transport);
+  if (!sums) return sums.status();
+  const auto phase = timings.phase("write");
+  const MeshTotals totals = totals_of(*sums, options.certified.precision == Precision::double_precision);
+  Status status = is_ply(job.output) ? write_ply(*own, *sums, totals, *out, team)
+                                     : write_vtp(*own, *sums, totals, job.output, team);
+  if (status.ok() && team.leads() && is_ply(job.output)) status = out->commit();
+  status = transport.agree(status);
+  return status.ok() && team.leads() ? report(job, common, *sums, transport, timings) : status;
+}
+
+std::string fault_of_place(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".ply" || extension == ".pvtp" ? "" : "is " + path + ", it must end in .ply or .pvtp";
+}
+
+/// Throws UsageError if an option decides for the whole mesh.
+void check_local(const TessellateOptions& options) {
+  const TessellationOptions& mesh = options.certified;
+  const auto refuse = [](const char* option) {
+    throw UsageError(option, "decides for the whole mesh, of which each rank has a part: use tessera tessellate");
+  };
+  if (mesh.smallest) refuse("--triangles");
+  if (mesh.fewest) refuse("--fewest");
+  if (mesh.crease_angle) refuse("--crease");
+  if (mesh.share_vertices) refuse("--share-vertices");
+}
+
+}  // namespace
+
+void add_tessellate_by_ranks(Command& tool, Session& session, MpiTeam& team) {
+  Command& command = tool.add_command("tessellate", "Turn a model into a mesh, each rank a part of it");
+  const auto options = std::make_shared<TessellateOptions>();
+  add_models(command, options->models);
+  command
+      .add_text("-o,--output", "FILE",
+                "The mesh: .ply, one file; or .pvtp, an index that viewers open, with a file .vtp for each rank",
+                options->output)
+      .require()
+      .check(fault_of_place);
+  const std::vector<const Option*> density = add_density(command, *options);
+  add_mesh_options(command, *options);
+  add_reading(command, options->models);
+  add_untrimmed(command, options->models);
+  add_view(command, *options);
+  add_common(command, session.common);
+  command.footer =
+      "The mesh is the same for any number of ranks, byte for byte, on one instruction set. Ranks read runs of a .bpt\n"
+      "file, and all of any other file. Instances are meshed where they stand, as one mesh. Not for options that "
+      "decide\n"
+      "for the whole mesh: --triangles, --fewest, --share-vertices, --crease.\n"
+      "\nExamples:\n"
+      "  mpirun -n 4 tessera_mpi tessellate sheet.bpt -o sheet.ply --tolerance 0.01\n"
+      "  mpirun -n 4 tessera_mpi tessellate part.step -o part.pvtp --relative 1e-4";
+  command.choose = [options, &session, &team, density] {
+    check_input_of_team(options->models);
+    if (options->models.files.size() != 1) throw UsageError("MODEL", "expected one file");
+    const bool is_default = std::ranges::none_of(density, [](const Option* option) { return option->count > 0; });
+    if (is_default) options->certified.relative = true, options->certified.tolerance = default_share;
+    check_local(*options);
+    options->certified = plan_options(*options);
+    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", ".ply"});
+    session.command = [options, plan, &session, &team] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return mesh_together(job, *options, session.common, team, timings);
+      });
+    };
+  };
+}
+
+}  // namespace tessera::cli
