@@ -162,9 +162,9 @@ class Mesh:
         self._wanted: dict[str, Any] = {}
 
     def _make(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
-        plan = _Plan(patches, wanted, progress)
+        plan = _Plan(patches, wanted, progress and (lambda share: progress(share / 2)))
         self._set, self._wanted, self._plan = patches, wanted, plan
-        self._write(progress)
+        self._write(progress and (lambda share: progress(0.5 + share / 2)))
 
     def _write(self, progress: Progress | None) -> None:
         """Describes the plan, takes memory and writes the mesh."""

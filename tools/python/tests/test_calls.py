@@ -53,10 +53,18 @@ def test_a_plan_ends_by_an_interrupt(field):
     assert len(field) == 3600
 
 
+def test_few_large_patches_end_by_an_interrupt(goblet):
+    patches = goblet.patches()
+    shares = []
+    patches.tessellate(1e-5, progress=shares.append)
+    assert len(shares) > 20  # where progress is reported, an interrupt is seen
+    interrupted(lambda: patches.tessellate(1e-6))
+
+
 def test_progress(field):
     shares = []
     field.tessellate(1e-3, progress=shares.append)
-    assert shares and 0 <= min(shares) and max(shares) == 1
+    assert shares == sorted(shares) and 0 <= shares[0] < shares[-1] == 1
 
     def stop(share):
         raise ZeroDivisionError
