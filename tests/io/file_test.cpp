@@ -104,7 +104,7 @@ TEST(OutputFile, PiecesOfEverySizeArriveInOrder) {
   std::string expected;
   Result<OutputFile> out = OutputFile::make(folder / "a");
   ASSERT_TRUE(out.ok());
-  for (const std::size_t size : {1u, 1000u, 1048575u, 1u, 1048576u, 0u, 1048577u, 3000000u, 17u}) {
+  for (const std::size_t size : {1u, 1000u, 32767u, 32768u, 65535u, 1u, 65536u, 0u, 65537u, 3000000u, 17u}) {
     const std::string piece(size, static_cast<char>('a' + size % 26));
     out->write(piece);
     out->write('|');

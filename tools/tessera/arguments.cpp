@@ -1,9 +1,12 @@
 #include "arguments.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
+#include <map>
 #include <system_error>
+#include <utility>
 
 #include "tessera/files.h"
 
@@ -59,13 +62,19 @@ void add_text_output(Command& command, std::string& output) {
   command.add_help();
 }
 
-void check_overwriting(const std::string& option, const std::string& output, const std::vector<std::string>& inputs) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(output, error)) return;
+void check_overwriting(const std::string& option, const std::vector<std::string>& outputs,
+                       const std::vector<std::string>& inputs) {
+  std::map<std::pair<dev_t, ino_t>, const std::string&> by_identity;
+  struct stat found {};
+  for (const std::string& output : outputs)
+    if (::stat(output.c_str(), &found) == 0 && S_ISREG(found.st_mode))
+      by_identity.emplace(std::pair(found.st_dev, found.st_ino), output);
+  if (by_identity.empty()) return;
   for (const std::string& input : inputs) {
-    if (std::filesystem::equivalent(output, input, error)) {
-      throw UsageError(option, output + " is the input " + input + ", which would be overwritten");
-    }
+    if (::stat(input.c_str(), &found) != 0) continue;
+    const auto same = by_identity.find({found.st_dev, found.st_ino});
+    if (same != by_identity.end())
+      throw UsageError(option, same->second + " is the input " + input + ", which would be overwritten");
   }
 }
 

@@ -1,15 +1,20 @@
 #include "batch.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "batch_workers.h"
+#include "console.h"
 #include "memory.h"
 #include "tessera/io.h"
 #include "tessera/version.h"
@@ -19,27 +24,41 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 64 bits of FNV-1a, from a start that the caller chooses.
-std::uint64_t hash_of(std::string_view bytes, std::uint64_t hash) {
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-  return hash;
-}
+/// Two hashes of 64 bits by FNV-1a, from different starts.
+struct InputHash {
+  std::uint64_t first = 0xcbf29ce484222325u, second = 0x84222325cbf29ce4u;
+
+  void add(std::string_view bytes) {
+    for (const char byte : bytes) {
+      first = (first ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+      second = (second ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+    }
+  }
+  /// Adds a file by its parts, so that its size needs no memory. Returns whether all could be read.
+  bool add_file(const std::string& name) {
+    std::error_code error;
+    if (!fs::is_regular_file(name, error)) return false;
+    std::ifstream file(name, std::ios::binary);
+    std::vector<char> part(std::size_t{1} << 16);
+    while (file.read(part.data(), static_cast<std::streamsize>(part.size())), file.gcount() > 0 && !interrupted())
+      add({part.data(), static_cast<std::size_t>(file.gcount())});
+    return file.eof();
+  }
+};
 
 /// Names a job by what decides its result: 128 bits in hexadecimal digits; empty if a file cannot be read, or is a pipe.
 std::string key_of(const Job& job, const CommonOptions& options) {
-  std::string text = TESSERA_VERSION "\n";
-  for (const std::string& word : options.words) text += word + '\n';
-  std::uint64_t first = hash_of(text, 0xcbf29ce484222325u), second = hash_of(text, 0x84222325cbf29ce4u);
+  InputHash hash;
+  hash.add(TESSERA_VERSION "\n");
+  for (const std::string& word : options.words) hash.add(word + '\n');
   for (const std::string& input : job.inputs) {
-    std::error_code error;
-    if (!fs::is_regular_file(input, error)) return {};
-    const Result<std::string> bytes = read_file(input);
-    if (!bytes) return {};
-    first = hash_of(*bytes, hash_of(input, first)), second = hash_of(*bytes, hash_of(input, ~second));
+    hash.second = ~hash.second;
+    hash.add(input);
+    if (!hash.add_file(input)) return {};
   }
   char digits[33];
-  std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(first),
-                static_cast<unsigned long long>(second));
+  std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(hash.first),
+                static_cast<unsigned long long>(hash.second));
   return digits;
 }
 
@@ -57,16 +76,23 @@ class Record {
       for (std::string line; std::getline(file, line);)  // a last line that was cut off matches nothing
         if (line.size() > key_size && line[key_size] == ' ') done_.insert(line.substr(0, key_size));
     }
-    file_.open(path_, resume ? std::ios::app : std::ios::trunc);
-    if (file_ && resume) file_ << '\n';  // ends such a line
-    return file_ ? Status() : Status(StatusCode::io_error, path_ + ": cannot be written");
+    if (!resume) std::ofstream(path_, std::ios::trunc);
+    file_.open(path_, std::ios::app);                  // so that two runs of a shard do not write over each other
+    if (file_ && resume) file_ << '\n' << std::flush;  // ends such a line
+    return written();
   }
   bool has(const std::string& key) const { return !key.empty() && done_.contains(key); }
-  void add(const std::string& key, const Job& job) {
+  /// Errors: io_error.
+  Status add(const std::string& key, const Job& job) {
     if (!key.empty()) file_ << key + " " + job.inputs[0] + "\n" << std::flush;
+    return written();
   }
 
  private:
+  Status written() const {
+    return file_ ? Status() : Status(StatusCode::io_error, path_ + ": cannot be written: " + std::strerror(errno));
+  }
+
   static constexpr std::size_t key_size = 32;
   std::string path_;
   std::set<std::string> done_;
@@ -155,23 +181,22 @@ std::vector<std::string> result_words(int argc, const char* const* argv) {
   return words;
 }
 
-void append_listed(const BatchOptions& options, std::vector<std::string>& files) {
+std::vector<std::string> listed_files(const BatchOptions& options, const std::vector<std::string>& files) {
+  std::vector<std::string> listed;
   if (options.list.empty()) {
     if (files.empty()) throw UsageError("MODEL", "expected files or --list FILE, found none");
-    return;
+    return listed;
   }
   const Result<std::string> text = read_file(options.list);
   if (!text) throw UsageError("--list", text.status().message());
-  std::size_t place = 0;
   for (std::size_t begin = 0; begin < text->size();) {
     const std::size_t end = std::min(text->find('\n', begin), text->size());
     std::string line = text->substr(begin, end - begin);
     begin = end + 1;
     if (line.ends_with('\r')) line.pop_back();
-    if (line.empty() || line.starts_with('#')) continue;
-    if (place++ % static_cast<std::size_t>(options.shard.second) == static_cast<std::size_t>(options.shard.first) - 1)
-      files.push_back(line);
+    if (!line.empty() && !line.starts_with('#')) listed.push_back(line);
   }
+  return listed;
 }
 
 Status run_batch(const Plan& plan, const CommonOptions& options,
@@ -179,28 +204,36 @@ Status run_batch(const Plan& plan, const CommonOptions& options,
   const BatchOptions& batch = options.batch;
   Record record(batch);
   if (Status status = record.open(batch.resume); !status.ok()) return status;
-  std::vector<std::string> keys(plan.jobs.size());
   Status failure;
   bool is_stopped = false;
-  const auto next = [&, k = std::size_t{0}]() mutable -> std::optional<std::size_t> {
-    for (; k < plan.jobs.size() && !is_stopped && !interrupted(); ++k) {
-      keys[k] = key_of(plan.jobs[k], options);
-      if (!record.has(keys[k]) || !is_there(plan.jobs[k])) return k++;
-    }
-    return {};
-  };
-  const auto done = [&](std::size_t k, const JobResult& result) {
-    if (result.status.ok()) record.add(keys[k], plan.jobs[k]);
-    const Status said = report(plan.jobs[k], result, options);
+  const auto done = [&](const Job& job, const JobResult& result) {
+    Status said = report(job, result, options);  // before the record: a kill in between loses no result
+    if (said.ok() && result.status.ok()) said = record.add(result.note, job);
     if (!result.status.ok()) failure = already_said(result.status.code());
     is_stopped = is_stopped || !said.ok() || (!result.status.ok() && !batch.keep_going);
     if (!said.ok()) failure = said;
+  };
+  for (const std::string& pattern : plan.unmatched) {
+    JobResult result;
+    result.status = Status(StatusCode::io_error, pattern + ": expected files that match, found none");
+    done({{pattern}, {}}, result);
+  }
+  const auto count = static_cast<std::size_t>(batch.shard.second);
+  const auto next = [&, k = static_cast<std::size_t>(batch.shard.first) - 1]() mutable -> std::optional<std::size_t> {
+    if (k >= plan.jobs.size() || is_stopped || interrupted()) return {};
+    return std::exchange(k, k + count);
   };
   const auto threads = options.threads > 0 ? static_cast<std::size_t>(options.threads)
                                            : std::max(1u, std::thread::hardware_concurrency());
   const Status status = run_workers(
       {.workers = std::min(threads, plan.jobs.size()), .timeout = batch.timeout, .memory = batch.memory}, next,
-      [&](std::size_t k, Timings& timings) { return work(plan.jobs[k], timings); }, done);
+      [&](std::size_t k, std::string& key) {
+        key = key_of(plan.jobs[k], options);
+        if (record.has(key) && is_there(plan.jobs[k])) return key.clear(), Status();
+        Timings timings;
+        return work(plan.jobs[k], timings);
+      },
+      [&](std::size_t k, const JobResult& result) { done(plan.jobs[k], result); });
   return status.ok() ? failure : status;
 }
 

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -72,7 +73,7 @@ std::uint64_t own_memory() {
 /// A worker's life: jobs in, results out.
 class Worker {
  public:
-  Worker(int jobs, int results, const std::function<Status(std::size_t, Timings&)>& work)
+  Worker(int jobs, int results, const std::function<Status(std::size_t, std::string&)>& work)
       : jobs_(jobs), results_(results), work_(work), printed_(::memfd_create("output", 0)) {
     ::dup2(printed_, STDOUT_FILENO);
   }
@@ -80,25 +81,25 @@ class Worker {
   /// No exception leaves it: this copy of the process must not unwind what the parent has begun.
   void run() noexcept {
     for (std::uint64_t job = 0; read_all(jobs_, &job, sizeof job) && !interrupted();) {
-      Timings timings;
-      const Status status = guarded([&] { return with_threads(1, [&] { return work_(job, timings); }); });
-      if (interrupted() || !send(status)) return;
+      std::string note;
+      const Status status = guarded([&] { return with_threads(1, [&] { return work_(job, note); }); });
+      if (interrupted() || !send(status, note)) return;
     }
   }
 
  private:
-  bool send(const Status& status) {
+  bool send(const Status& status, const std::string& note) {
     std::string output(static_cast<std::size_t>(std::max<off_t>(0, ::lseek(printed_, 0, SEEK_END))), '\0');
     ::lseek(printed_, 0, SEEK_SET);
     const bool is_whole = read_all(printed_, output.data(), output.size());
     ::lseek(printed_, 0, SEEK_SET);
     const std::uint8_t code = static_cast<std::uint8_t>(status.code());
     return is_whole && ::ftruncate(printed_, 0) == 0 && write_all(results_, &code, 1) &&
-           write_text(results_, status.message()) && write_text(results_, output);
+           write_text(results_, status.message()) && write_text(results_, output) && write_text(results_, note);
   }
 
   int jobs_, results_;
-  const std::function<Status(std::size_t, Timings&)>& work_;
+  const std::function<Status(std::size_t, std::string&)>& work_;
   int printed_;
 };
 
@@ -114,7 +115,7 @@ struct Process {
 class Pool {
  public:
   Pool(const WorkerLimits& limits, const std::function<std::optional<std::size_t>()>& next,
-       const std::function<Status(std::size_t, Timings&)>& work,
+       const std::function<Status(std::size_t, std::string&)>& work,
        const std::function<void(std::size_t, const JobResult&)>& done)
       : limits_(limits), next_(next), work_(work), done_(done), processes_(limits.workers) {}
   Pool(const Pool&) = delete;
@@ -139,9 +140,13 @@ class Pool {
   Status start(Process& process) {
     int jobs[2], results[2];
     if (::pipe(jobs) != 0 || ::pipe(results) != 0) return failed("a pipe");
+    const pid_t parent = ::getpid();
     process.id = ::fork();
     if (process.id < 0) return failed("a process");
     if (process.id == 0) {
+      // A worker whose parent was killed would hang without its timeout, or write while another run resumes.
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (::getppid() != parent) std::_Exit(0);
       ::setpgid(0, 0);  // with the programs that it starts
       for (const Process& other : processes_)
         for (const int file : {other.jobs, other.results})
@@ -210,7 +215,7 @@ class Pool {
     std::uint8_t code = 0;
     std::string message;
     const bool is_whole = read_all(process.results, &code, 1) && read_text(process.results, message) &&
-                          read_text(process.results, result.output);
+                          read_text(process.results, result.output) && read_text(process.results, result.note);
     if (is_whole)
       result.status = code == 0 ? Status() : Status(static_cast<StatusCode>(code), message);
     else
@@ -257,7 +262,7 @@ class Pool {
 
   const WorkerLimits& limits_;
   const std::function<std::optional<std::size_t>()>& next_;
-  const std::function<Status(std::size_t, Timings&)>& work_;
+  const std::function<Status(std::size_t, std::string&)>& work_;
   const std::function<void(std::size_t, const JobResult&)>& done_;
   std::vector<Process> processes_;
 };
@@ -265,7 +270,7 @@ class Pool {
 }  // namespace
 
 Status run_workers(const WorkerLimits& limits, const std::function<std::optional<std::size_t>()>& next,
-                   const std::function<Status(std::size_t, Timings&)>& work,
+                   const std::function<Status(std::size_t, std::string&)>& work,
                    const std::function<void(std::size_t, const JobResult&)>& done) {
   return Pool(limits, next, work, done).run();
 }

@@ -85,10 +85,10 @@ void add_convert(Command& tool, Session& session) {
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
-    append_listed(session.common.batch, options->models.files);
+    const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
     check_input(options->models);
     check_stream_format(options->output, options->format);
-    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
+    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders}, listed);
     check_batch(session.common.batch, plan);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {

@@ -362,7 +362,7 @@ void add_eval(Command& tool, Session& session) {
     if (options->team) check_input_of_team(options->models);
     const std::string extension = "." + options->format;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
-    for (const Job& job : plan.jobs) check_overwriting("--output", job.output, {options->places});
+    check_overwriting("--output", plan.outputs(), {options->places});
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_eval(job, *options, session.common, timings);

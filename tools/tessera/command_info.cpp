@@ -206,9 +206,9 @@ void add_info(Command& tool, Session& session) {
   add_common(command, session.common);
   command.footer = footer;
   command.choose = [options, &session] {
-    append_listed(session.common.batch, options->models.files);
+    const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
     check_input(options->models);
-    const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false});
+    const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false}, listed);
     session.command = [options, plan, &session] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return run_info(job, *options, session.common, timings);

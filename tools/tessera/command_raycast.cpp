@@ -137,7 +137,7 @@ void add_ray_options(Command& command, RaycastOptions& options, const std::vecto
 Plan plan_raycast(const RaycastOptions& options, const CommonOptions& common) {
   if (!options.rays.empty()) {
     Plan plan = plan_jobs(options.models.files, options.hits, {"--hits", ".csv"});
-    for (const Job& job : plan.jobs) check_overwriting("--hits", job.output, {options.rays});
+    check_overwriting("--hits", plan.outputs(), {options.rays});
     return plan;
   }
   const bool in_terminal = options.picture.empty();

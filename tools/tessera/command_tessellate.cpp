@@ -179,12 +179,12 @@ void add_tessellate(Command& tool, Session& session) {
   add_common(command, session.common);
   command.footer = tessellate_footer;
   command.choose = [options, &session, density] {
-    append_listed(session.common.batch, options->models.files);
+    const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
     check_input(options->models);
     check_stream_format(options->output, options->format);
     options->is_default = std::ranges::none_of(density, [](const Option* option) { return option->count > 0; });
     if (options->is_default) options->certified.relative = true, options->certified.tolerance = default_share;
-    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders});
+    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders}, listed);
     check_batch(session.common.batch, plan);
     if (options->quads) check_formats(plan, "--quads", "triangles", "quads");
     if (options->certified.precision == Precision::double_precision)

@@ -78,14 +78,22 @@ Json error_json(const Job& job, const Status& status) {
           {"error", {{"code", std::string(name(status.code()))}, {"message", status.message()}}}};
 }
 
+std::vector<std::string> Plan::outputs() const {
+  std::vector<std::string> names;
+  for (const Job& job : jobs) names.push_back(job.output);
+  return names;
+}
+
 bool is_folder(const std::string& output) {
   std::error_code error;
   return output.ends_with('/') || fs::is_directory(output, error);
 }
 
-Plan plan_jobs(const std::vector<std::string>& words, const std::string& output, const OutputRule& rule) {
+Plan plan_jobs(const std::vector<std::string>& words, const std::string& output, const OutputRule& rule,
+               const std::vector<std::string>& listed) {
   Plan plan;
-  const std::vector<std::string> files = expand(words, plan.unmatched);
+  std::vector<std::string> files = expand(words, plan.unmatched);
+  files.insert(files.end(), listed.begin(), listed.end());
   const bool each =
       output.empty() ? !rule.together : is_folder(output) || output.find(placeholder) != std::string::npos;
   for (const std::string& file : files) {
@@ -96,13 +104,13 @@ Plan plan_jobs(const std::vector<std::string>& words, const std::string& output,
     }
   }
   check_outputs_differ(plan.jobs, rule);
-  for (const Job& job : plan.jobs) check_overwriting(rule.option, job.output, files);
+  check_overwriting(rule.option, plan.outputs(), files);
   return plan;
 }
 
 Status run_jobs(const Plan& plan, const CommonOptions& options,
                 const std::function<Status(const Job&, Timings&)>& work) {
-  if (!options.batch.list.empty() && !plan.jobs.empty()) return run_batch(plan, options, work);
+  if (!options.batch.list.empty()) return run_batch(plan, options, work);
   Status failure;
   const auto fail = [&](const Job& job, const Status& status) {
     if (!is_already_said(status)) {

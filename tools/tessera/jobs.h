@@ -20,6 +20,8 @@ struct Job {
 struct Plan {
   std::vector<Job> jobs;
   std::vector<std::string> unmatched;  ///< patterns that match no file
+
+  std::vector<std::string> outputs() const;  ///< of each job
 };
 
 /// How a command treats its files.
@@ -30,10 +32,11 @@ struct OutputRule {
 };
 
 /// The files that `words` name. A name with *, ? or [ that is not a file stands for the files that it matches, in the
-/// order of their bytes; if there are none, running the jobs reports an error. If the output is a folder, or holds
-/// {name} (the file's name without folder and extension), each file has its own result; otherwise all files make one.
-/// Throws UsageError if two files would be written to one place.
-Plan plan_jobs(const std::vector<std::string>& words, const std::string& output, const OutputRule& rule);
+/// order of their bytes; if there are none, running the jobs reports an error. Names of `listed` are no patterns, and
+/// follow. If the output is a folder, or holds {name} (the file's name without folder and extension), each file has its
+/// own result; otherwise all files make one. Throws UsageError if two files would be written to one place.
+Plan plan_jobs(const std::vector<std::string>& words, const std::string& output, const OutputRule& rule,
+               const std::vector<std::string>& listed = {});
 
 /// Whether an output is a folder, which gets a result per file.
 bool is_folder(const std::string& output);
@@ -41,8 +44,9 @@ bool is_folder(const std::string& output);
 /// The output of --json for a job that failed.
 Json error_json(const Job& job, const Status& status);
 
-/// Does `work` for each job, in worker processes if the files come from a list (see batch.h). Reports jobs that fail and continues; the status is then not ok, and already printed. With
-/// --json a failure is also an object {"files", "error"}; with --timings standard error shows the timings.
+/// Does `work` for each job, in worker processes if the files come from a list (see batch.h). Reports jobs that fail and
+/// continues; the status is then not ok, and already printed. With --json a failure is also an object {"files",
+/// "error"}; with --timings standard error shows the timings.
 Status run_jobs(const Plan& plan, const CommonOptions& options,
                 const std::function<Status(const Job&, Timings&)>& work);
 

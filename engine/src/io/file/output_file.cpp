@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr std::size_t buffer_bytes = std::size_t{1} << 16;  // small, since it is cleared for every file
 
 /// The name of a temporary, where a signal handler can read it: in memory that is never freed, without a lock.
 struct NamePlace {
