@@ -195,6 +195,56 @@ TEST(PlyPieces, AFullDiskLeavesNothing) {
   EXPECT_EQ(content_of(path), "before");
 }
 
+PlyStream stream_of(const std::string& path) { return *PlyStream::make(*OutputFile::make(path)); }
+
+TEST(PlyStream, BytesAreThoseOfTheWhole) {
+  const ScratchFolder folder;
+  for (const Kind& kind : kinds)
+    for (const std::size_t count : {1u, 2u, 3u, 7u}) {
+      const std::vector<Mesh> pieces = pieces_of(count, kind);
+      std::vector<PiecePlace> places;
+      const Mesh whole = joined(pieces, places);
+      ASSERT_TRUE(write_mesh(whole, folder / "whole.ply").ok());
+      PlyStream out = stream_of(folder / "pieces.ply");
+      ASSERT_TRUE(out.append({}, 0).ok());
+      for (const Mesh& piece : pieces) ASSERT_TRUE(out.append(piece, patches_per_piece).ok());
+      EXPECT_EQ(out.totals().triangles, whole.triangle_count());
+      EXPECT_EQ(folder.names().size(), 2u) << "the whole and a temporary";
+      ASSERT_TRUE(out.commit().ok());
+      EXPECT_TRUE(content_of(folder / "whole.ply") == content_of(folder / "pieces.ply")) << count << " pieces";
+      fs::remove(folder / "pieces.ply");
+    }
+}
+
+TEST(PlyStream, FaultsAreErrorsAndLeaveNothing) {
+  const ScratchFolder folder;
+  const std::string path = folder / "m.ply";
+  EXPECT_EQ(stream_of(path).commit().message(), path + ": the mesh has no vertices");
+  {
+    PlyStream out = stream_of(path);
+    Mesh other = piece_of(0, {}), bad = piece_of(0, {});
+    ASSERT_TRUE(out.append(other, 1).ok());
+    other.normals.clear();
+    EXPECT_EQ(out.append(other, 1).code(), StatusCode::count_mismatch);
+    bad.indices[7] = 1000;
+    EXPECT_EQ(out.append(bad, 1).index(), 7);
+  }
+  Status written, status;
+  with_full_disk([&] {
+    PlyStream out = stream_of(path);
+    for (std::size_t k = 0; k < 7; ++k) written = out.append(piece_of(k, {}), 0);
+  });
+  EXPECT_EQ(written.message(), path + ": cannot be written: File too large");
+  with_full_disk([&] {
+    PlyStream out = stream_of(path);
+    for (std::size_t k = 0; k < 2; ++k) written = out.append(piece_of(k, {}), 0);
+    status = out.commit();
+  });
+  EXPECT_TRUE(written.ok());
+  EXPECT_EQ(status.message(), path + ": cannot be written: File too large");
+  EXPECT_EQ(folder.names(), Names{});
+}
+
 TEST(PlyPieces, APipeIsAnError) {
   const ScratchFolder folder;
   const std::vector<Mesh> pieces = pieces_of(1, {});

@@ -7,9 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
+#include <memory>
 #include <string>
-#include <vector>
 
 #include "tessera/files.h"
 #include "tessera/mesh.h"
@@ -94,6 +93,32 @@ class PlyPieces {
   PlyLayout layout_;
   std::uint64_t vertices_ = 0, triangles_ = 0, quads_ = 0;
   Status failure_;  ///< of a write
+};
+
+/// Writes a .ply file of pieces in their order, before it is known how many come. The file has the bytes that
+/// write_mesh() gives the whole mesh, and appears whole, at commit(), or not at all. Records wait in files without a name
+/// beside it, which takes the room of the file twice. Memory: 3 MiB beside a piece.
+class PlyStream {
+ public:
+  /// `out` is a file that nothing was written to. Errors: io_error (its folder), out_of_memory.
+  static Result<PlyStream> make(OutputFile out);
+  PlyStream(PlyStream&&) noexcept;
+  PlyStream& operator=(PlyStream&&) = delete;
+  ~PlyStream();
+
+  /// Appends a piece, whose numbers count from 0, as does `patches`: the number of its patches. All pieces have the
+  /// attributes of the first one that has faces. A piece without vertices changes nothing. Errors: those of
+  /// PlyLayout::make() and PlyLayout::check(), io_error.
+  Status append(const Mesh& piece, std::uint64_t patches);
+  /// The sizes of all pieces so far.
+  const MeshTotals& totals() const;
+  /// Writes the file. Call it once, last. Errors: invalid_argument (no vertices), io_error, cancelled.
+  Status commit();
+
+ private:
+  class Content;
+  explicit PlyStream(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
 };
 
 /// @name Pieces of VTK's kind

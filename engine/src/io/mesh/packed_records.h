@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string_view>
 
 #include "base/function_ref.h"
 #include "tessera/files.h"
@@ -12,9 +13,14 @@
 
 namespace tessera::inline abi_0_1 {
 
+/// Takes bytes one after the other. Returns false once no more are wanted.
+using PackedSink = FunctionRef<bool(std::string_view)>;
+
 /// Writes `count` records of `bytes` each. pack(first, last, to) stores the records [first, last) from `to` on, and is
-/// called for pieces of them from any number of threads. `offset`: where the first stands in the file; none: after what
-/// was written last. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
+/// called for pieces of them from any number of threads. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
+Status write_packed(PackedSink write, std::size_t count, std::size_t bytes,
+                    FunctionRef<void(std::size_t, std::size_t, char*)> pack);
+/// Writes to a file. `offset`: where the first record stands there; none: after what was written last.
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
                     FunctionRef<void(std::size_t, std::size_t, char*)> pack, std::optional<std::uint64_t> offset = {});
 
