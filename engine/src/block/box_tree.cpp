@@ -21,6 +21,10 @@ bool meet(const Box3& a, const Box3& b) {
 
 }  // namespace
 
+bool are_near(const Box3& a, const Box3& b, double reach) {
+  return !a.empty() && !b.empty() && meet(grown(a, reach), b);
+}
+
 BoxTree::BoxTree(std::span<const Box3> boxes) {
   std::vector<std::uint32_t> order;
   for (std::uint32_t k = 0; k < boxes.size(); ++k)

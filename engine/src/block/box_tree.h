@@ -9,6 +9,9 @@
 
 namespace tessera::inline abi_0_1 {
 
+/// Whether a box, grown by `reach` to all sides, has a point in common with another. Empty boxes have none.
+bool are_near(const Box3& a, const Box3& b, double reach);
+
 /// A tree over boxes. Empty boxes touch nothing. Memory: 56 bytes per box.
 class BoxTree {
  public:

@@ -111,12 +111,19 @@ void mark_joined(const Model& model, std::size_t first, std::size_t end, std::ve
 
 /// Marks the surfaces whose boxes come within reach of those of marked ones. Returns the box of those marked before.
 Box3 mark_near(std::span<const Box3> boxes, double reach, std::vector<bool>& marks) {
+  Box3 box, box_of_others;
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    if (marks[k]) box.extend(boxes[k]);
+  // Most surfaces are far from the border between the marked and the others.
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    if (!marks[k] && are_near(boxes[k], box, reach)) others.push_back(k), box_of_others.extend(boxes[k]);
   std::vector<Box3> marked;
   for (std::size_t k = 0; k < boxes.size(); ++k)
-    if (marks[k]) marked.push_back(boxes[k]);
+    if (marks[k] && are_near(boxes[k], box_of_others, reach)) marked.push_back(boxes[k]);
   const BoxTree tree(marked);
-  for (std::size_t k = 0; k < boxes.size(); ++k) marks[k] = marks[k] || tree.touches(boxes[k], reach);
-  return tree.box();
+  for (const std::size_t k : others) marks[k] = tree.touches(boxes[k], reach);
+  return box;
 }
 
 /// Adds what a part has of the instances, and of their shapes.
@@ -160,11 +167,14 @@ Result<SurfaceExtents> surface_extents(const Model& model, const FitOptions& fit
     if (Status status = check_topology(model); !status.ok()) return status;
     ModelPatches patches(model, {});
     patches.name_edges();
-    if (Status status = patches.add_all(fit); !status.ok()) return status;
-    const GatheredPatches& all = patches.gathered();
-    SurfaceExtents extents{std::vector<Box3>(model.surfaces.size()), all.fit_error};
-    for (std::size_t k = 0; k < all.patches.size(); ++k)
-      extents.boxes[all.sources[k].surface].extend(all.patches[k].hull_box());
+    SurfaceExtents extents{std::vector<Box3>(model.surfaces.size()), {}};
+    for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+      Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
+      if (!grid) return in_surface(model, k, grid.status());
+      if (Status status = patches.add(*std::move(grid)); !status.ok()) return status;
+      extents.boxes[k] = patches.take_box();
+    }
+    extents.fit_error = patches.gathered().fit_error;
     return extents;
   });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "base/impl_access.h"
 #include "tessera/status.h"
@@ -159,6 +160,11 @@ Status ModelPatches::add_all(const FitOptions& fit) {
     if (Status status = add(*std::move(grid)); !status.ok()) return status;
   }
   return {};
+}
+
+Box3 ModelPatches::take_box() {
+  all_.patches.clear(), all_.sources.clear(), all_.trims.cuts.clear(), edges_.faces.clear();
+  return std::exchange(all_.box, {});
 }
 
 Result<PatchSet> ModelPatches::packed() && {

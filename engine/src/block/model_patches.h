@@ -71,6 +71,8 @@ class ModelPatches {
   /// Converts all surfaces of the model and adds their patches.
   Status add_all(const FitOptions& fit);
   const GatheredPatches& gathered() const { return all_; }
+  /// Returns the box of the patches that are gathered, and drops them.
+  Box3 take_box();
   Result<PatchSet> packed() &&;
 
  private:

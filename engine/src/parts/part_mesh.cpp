@@ -40,7 +40,7 @@ template <class T>
 void keep(std::vector<T>& values, std::size_t begin, std::size_t end) {
   if (values.empty()) return;
   values.resize(end);
-  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
+  if (begin > 0) values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
 }
 
 /// Leaves of a mesh only what some patches have, from `begin` until `end`.
@@ -54,6 +54,7 @@ void keep_patches(Mesh& mesh, std::size_t first_patch, const MeshCapacity& begin
   keep(mesh.quads, 4 * begin.quads, 4 * end.quads);
   keep(mesh.quad_patches, begin.quads, end.quads);
   const auto lower = [](std::vector<std::uint32_t>& values, std::size_t by) {
+    if (by == 0) return;
     for (std::uint32_t& value : values) value -= static_cast<std::uint32_t>(by);
   };
   lower(mesh.indices, begin.vertices), lower(mesh.quads, begin.vertices);

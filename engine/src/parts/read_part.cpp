@@ -85,9 +85,8 @@ Result<std::vector<SentBox>> find_nearest(std::span<const Box3> boxes, const Sur
   std::vector<Message> messages(places.size());
   for (std::size_t part = 0; part < places.size(); ++part) {
     if (part == transport.part() || places[part].box.empty()) continue;
-    const BoxTree other(std::span(&places[part].box, 1));
     for (std::size_t k = 0; k < boxes.size(); ++k)
-      if (other.touches(boxes[k], reach)) append(messages[part], sent(run.first + k, boxes[k]));
+      if (are_near(places[part].box, boxes[k], reach)) append(messages[part], sent(run.first + k, boxes[k]));
   }
   Result<std::vector<Message>> taken = transport.exchange(std::move(messages));
   if (!taken) return taken.status();
@@ -127,9 +126,8 @@ Result<std::vector<std::uint64_t>> find_around(std::span<const Box3> boxes, cons
   for (const SentBox& sent : *nearest) {
     surfaces.push_back(sent.surface);
     const Box3 box = box_of(sent);
-    const BoxTree tree(std::span(&box, 1));
     for (std::size_t part = 0; part < places.size(); ++part)
-      if (part != transport.part() && tree.touches(places[part].box, reach)) append(messages[part], sent);
+      if (part != transport.part() && are_near(places[part].box, box, reach)) append(messages[part], sent);
   }
   const Result<std::vector<Message>> asked = transport.exchange(std::move(messages));
   if (!asked) return asked.status();
