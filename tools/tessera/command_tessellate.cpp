@@ -11,6 +11,7 @@
 #include "loading.h"
 #include "meshing.h"
 #include "output.h"
+#include "pieces.h"
 #include "tessellate_footer.h"
 #include "tessellate_options.h"
 #include "tessera/io.h"
@@ -68,14 +69,8 @@ std::string report_text(const Job& job, const TessellateOptions& options, const 
          (made.by_shapes ? ", in " + readable_seconds(timings.total()) : "") + "\n" + fit_line(made.fit_error);
 }
 
-Status report(const Job& job, const TessellateOptions& options, const CommonOptions& common, const Loaded& loaded,
-              const Meshed& made, const Timings& timings) {
-  if (!common.json) return print_report(job.output, report_text(job, options, loaded, made, timings));
-  Json object = files_json(loaded);
-  object["output"] = job.output;
-  object["shapes"] = loaded.model.shapes.size();
-  object["instances"] = loaded.model.instances.size();
-  object["solids"] = count_solids(loaded.model);
+/// Adds the sizes of a mesh and the tolerances that it keeps.
+void add_mesh_facts(Json& object, const TessellateOptions& options, const Meshed& made) {
   object["vertices"] = made.size.vertices;
   object["triangles"] = made.size.triangles;
   object["quads"] = made.size.quads;
@@ -87,13 +82,26 @@ Status report(const Job& job, const TessellateOptions& options, const CommonOpti
     object["default_relative"] = options.is_default ? Json(default_share) : Json();
     object["bound"] = made.bound;
     object["certified"] = made.proven;
+    object["tolerance"] = std::isinf(made.tolerance) ? Json() : Json(made.tolerance);
+    object["weld"] = options.certified.weld ? Json(*options.certified.weld) : Json();
+    object["gap"] = made.gap;
+  }
+}
+
+Status report(const Job& job, const TessellateOptions& options, const CommonOptions& common, const Loaded& loaded,
+              const Meshed& made, const Timings& timings) {
+  if (!common.json) return print_report(job.output, report_text(job, options, loaded, made, timings));
+  Json object = files_json(loaded);
+  object["output"] = job.output;
+  object["shapes"] = loaded.model.shapes.size();
+  object["instances"] = loaded.model.instances.size();
+  object["solids"] = count_solids(loaded.model);
+  add_mesh_facts(object, options, made);
+  if (!options.grid) {
     object["angle"] = options.certified.angle ? Json(made.angle) : Json();
     object["patches_without_angle"] = made.patches_without_angle;
     object["pixels"] = options.pixels > 0 ? Json(made.pixels) : Json();
-    object["tolerance"] = std::isinf(made.tolerance) ? Json() : Json(made.tolerance);
-    object["weld"] = options.certified.weld ? Json(*options.certified.weld) : Json();
     object["welded_borders"] = made.welded_borders;
-    object["gap"] = made.gap;
     object["open_edges"] = made.open_edges;
     object["cut_patches"] = made.cut_patches;
     object["crossed_surfaces"] = made.crossed.size();
@@ -115,7 +123,36 @@ Result<Meshed> make_meshes(const TessellateOptions& options, Loaded& loaded, boo
   return mesh_as_one(options, loaded, timings);
 }
 
+/// Reads, meshes and writes a model that is larger than memory.
+Status run_in_pieces(const Job& job, const TessellateOptions& options, const CommonOptions& common, Timings& timings) {
+  const Result<InPieces> result = mesh_in_pieces(job, options, timings);
+  if (!result) return result.status();
+  const Meshed& made = result->made;
+  say_warnings(result->warnings);
+  TessellateOptions told = options;  // pieces keep angles and pixels, too, but don't tell which
+  told.certified.angle.reset();
+  told.pixels = 0;
+  if (!common.json)
+    return print_report(job.output, job.output + ": " + counted(result->pieces, "piece") + ", " +
+                                        counted(made.size.vertices, "vertex", "vertices") + ", " +
+                                        counted(made.size.triangles, "triangle") +
+                                        (options.quads ? ", " + counted(made.size.quads, "quad") : "") +
+                                        kept(told, made) + "\n" + fit_line(made.fit_error));
+  Json object = {{"models", job.inputs}, {"failed", Json::array()}};
+  object["output"] = job.output;
+  object["pieces"] = result->pieces;
+  add_mesh_facts(object, options, made);
+  object["surfaces"] = result->surfaces;
+  object["patches"] = made.patches;
+  object["trimmed_surfaces"] = result->trimmed;
+  object["fit_error"] = fit_json(made.fit_error);
+  object["warnings"] = result->warnings;
+  add_seconds(object, common, timings);
+  return print_report(job.output, object.text() + "\n");
+}
+
 Status run_tessellate(const Job& job, const TessellateOptions& options, const CommonOptions& common, Timings& timings) {
+  if (options.piece_bytes > 0) return run_in_pieces(job, options, common, timings);
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
   Result<Loaded> loaded = load(job, options.models, allows_shapes(options) ? With::shapes : With::patches, timings);
@@ -142,7 +179,7 @@ constexpr const char* extension_in_folders = ".ply";
 
 std::string fault_of_output(const std::string& path) {
   if (path.empty()) return fault_of_name(path);
-  return is_folder(path) || is_stream(path) ? "" : check_mesh_format(path).message();
+  return is_folder(path) || is_stream(path) || is_index(path) ? "" : check_mesh_format(path).message();
 }
 
 /// The formats without quads and without positions in double.
@@ -177,6 +214,7 @@ void add_tessellate(Command& tool, Session& session) {
   add_view(command, *options);
   add_batch(command, session.common.batch);
   add_common(command, session.common);
+  add_in_pieces(command, *options);
   command.footer = tessellate_footer;
   command.choose = [options, &session, density] {
     const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
@@ -186,6 +224,7 @@ void add_tessellate(Command& tool, Session& session) {
     if (options->is_default) options->certified.relative = true, options->certified.tolerance = default_share;
     const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension_in_folders}, listed);
     check_batch(session.common.batch, plan);
+    check_pieces(*options, plan);
     if (options->quads) check_formats(plan, "--quads", "triangles", "quads");
     if (options->certified.precision == Precision::double_precision)
       check_formats(plan, "--precision", "positions in float", "positions in double");

@@ -42,14 +42,6 @@ std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
                                                 [](const ModelSurface& surface) { return !surface.trims->empty(); }));
 }
 
-/// Prints a warning about each part of the file that the model does not hold.
-void say_warnings(const Model& model) {
-  constexpr std::size_t limit = 20;  // lines; a file may hold a long list of unread parts
-  const std::size_t count = model.warnings.size();
-  for (std::size_t k = 0; k < std::min(count, limit); ++k) warn(model.warnings[k]);
-  if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
-}
-
 /// Converts surfaces on all threads; if several fail, reports the first one.
 Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit) {
   const std::size_t count = model.surfaces.size();
@@ -95,7 +87,7 @@ Status add_file(const std::string& file, const ModelOptions& options, With with,
     return read_any_model(file, options.input_format);
   }();
   if (!model) return model.status();
-  say_warnings(*model);
+  say_warnings(model->warnings);
   const bool has_shapes = !model->instances.empty();
   if (with == With::patches || (with == With::shapes && !has_shapes)) {
     const auto phase = timings.phase("convert");
@@ -207,6 +199,13 @@ Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timi
   if (!loaded.files.empty()) return loaded;
   return Status(loaded.failed.back().second.code(),
                 "none of the " + std::to_string(loaded.failed.size()) + " models can be used");
+}
+
+void say_warnings(const std::vector<std::string>& warnings) {
+  constexpr std::size_t limit = 20;  // lines; a file may hold a long list of unread parts
+  const std::size_t count = warnings.size();
+  for (std::size_t k = 0; k < std::min(count, limit); ++k) warn(warnings[k]);
+  if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
 }
 
 Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings) {

@@ -53,6 +53,9 @@ enum class With { surfaces, patches, shapes };  ///< shapes: as surfaces if all 
 /// file, or of the last one if all of several fail.
 Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings);
 
+/// Prints a warning about each part of a file that is not read.
+void say_warnings(const std::vector<std::string>& warnings);
+
 /// Converts the surfaces of a model that load() has left as they are. Errors name file and surface.
 Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings);
 

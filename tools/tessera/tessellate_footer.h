@@ -16,11 +16,13 @@ inline constexpr const char* tessellate_footer =
     "a\n"
     "crack. The printed bound is proven, and includes float rounding and fits. With --quads whole cells are faces of\n"
     "four corners; strips along borders and cells at poles are triangles.\n"
+    "With --in-pieces a .ply has the bytes that it has without, unless faces are trimmed: these are not joined.\n"
     "\nExamples:\n"
     "  tessera tessellate part.step -o part.glb\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001 --angle 10\n"
     "  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40\n"
+    "  tessera tessellate huge.bpt -o huge.pvtp --in-pieces 4G\n"
     "  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8";
 
 }  // namespace tessera::cli

@@ -23,6 +23,7 @@ struct TessellateOptions {
   TessellationOptions certified;  ///< used if there is no grid
   bool is_default = false;        ///< whether no density is on the command line
   std::uint64_t max_memory = 0;   ///< bytes of the mesh; 0: a share of what is free
+  std::uint64_t piece_bytes = 0;  ///< memory of a piece; 0: the model is meshed as a whole
   bool quads = false;
   double pixels = 0;  ///< above 0 if requested
   View view;
