@@ -39,9 +39,6 @@ bool allows_shapes(const TessellateOptions& options);
 /// Whether the model's shapes can be meshed by the options: an angle is kept by placements that stretch evenly only.
 bool suits_shapes(const TessellateOptions& options, const Loaded& loaded);
 
-/// The options of a plan.
-TessellationOptions plan_options(const TessellateOptions& options);
-
 /// Meshes all surfaces as one set. Errors: those of packing and of Tessellation.
 Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, Timings& timings);
 /// Meshes each shape once. `flat`: whether the file will hold one mesh of all instances, which rounds once more.
