@@ -58,8 +58,8 @@ std::vector<Mesh> meshes_in_parts(const Model& model, std::size_t parts, const T
   std::vector<Mesh> meshes;
   surfaces = 0;
   for (std::size_t k = 0; k < parts; ++k) {
-    const SurfaceRun run = even_run(model.surfaces.size(), k, parts);
-    const ModelPart part = value_of(part_of(model, extents, run.first, run.end, reach));
+    const PartRun run = run_of_part(model.surfaces.size(), k, parts);
+    const ModelPart part = value_of(part_of(model, extents, run.begin, run.end, reach));
     surfaces += part.surfaces.size();
     meshes.push_back(value_of(tessellate_part(part, options)).mesh);
   }

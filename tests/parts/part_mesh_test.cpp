@@ -123,7 +123,7 @@ Result<Mesh> read_in_parts(const Model& model, std::size_t parts, const Tessella
   std::mutex mutex;
   const Status status = run_parts(parts, [&](Transport& transport) -> Status {
     const std::size_t k = transport.part();
-    const Result<PartOutline> outline = find_part(source, even_run(source.count, k, parts), options, transport);
+    const Result<PartOutline> outline = find_part(source, run_of_part(source.count, k, parts), options, transport);
     if (!outline) return outline.status();
     const Result<ModelPart> part = load_part(source, *outline);
     const Result<PartMesh> own = part ? tessellate_part(*part, options) : part.status();
@@ -192,7 +192,7 @@ TEST(PartMesh, EndsInAllPartsWhereOneFails) {
                                return read;
                              }};
   const Status status = run_parts(3, [&](Transport& transport) -> Status {
-    const auto outline = find_part(source, even_run(source.count, transport.part(), 3), options, transport);
+    const auto outline = find_part(source, run_of_part(source.count, transport.part(), 3), options, transport);
     messages[transport.part()] = outline.status().message();
     return outline.status();
   });
@@ -207,8 +207,8 @@ TEST(PartMesh, RefusesRunsThatAreNotTheWhole) {
                                                    read.surfaces.end() - static_cast<std::ptrdiff_t>(end - first));
                                return read;
                              }};
-  for (const std::vector<SurfaceRun>& runs :
-       {std::vector<SurfaceRun>{{0, 2}, {3, 6}}, {{0, 3}, {2, 6}}, {{0, 3}, {3, 5}}, {{0, 3}, {3, 7}}}) {
+  for (const std::vector<PartRun>& runs :
+       {std::vector<PartRun>{{0, 2}, {3, 6}}, {{0, 3}, {2, 6}}, {{0, 3}, {3, 5}}, {{0, 3}, {3, 7}}}) {
     const Status status = run_parts(2, [&](Transport& transport) -> Status {
       return find_part(source, runs[transport.part()], {.tolerance = 0.1}, transport).status();
     });

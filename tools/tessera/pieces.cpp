@@ -166,7 +166,7 @@ Result<std::vector<PartOutline>> find_pieces(const SurfaceSource& source, const 
   Progress progress("finding neighbours");
   const Status status = run_parts(pieces, [&](Transport& transport) -> Status {
     progress.tell(double(transport.part()) / double(pieces));
-    const SurfaceRun run = even_run(source.count, transport.part(), pieces);
+    const PartRun run = run_of_part(source.count, transport.part(), pieces);
     Result<PartOutline> outline = find_part(source, run, plan_options(options), transport, options.models.fit);
     if (outline) outlines[transport.part()] = *std::move(outline);
     return outline.status();

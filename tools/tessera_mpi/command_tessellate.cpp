@@ -51,8 +51,8 @@ Result<ModelPart> part_of_whole(const Job& job, const TessellateOptions& options
   if (Status status = join_faces(loaded->model, options.models); !status.ok()) return status;
   const Result<SurfaceExtents> extents = surface_extents(loaded->model, options.models.fit);
   if (!extents) return extents.status();
-  const SurfaceRun run = even_run(loaded->model.surfaces.size(), transport.part(), transport.part_count());
-  return part_of(loaded->model, *extents, run.first, run.end, part_reach(options.certified, extents->box()));
+  const PartRun run = run_of_part(loaded->model.surfaces.size(), transport.part(), transport.part_count());
+  return part_of(loaded->model, *extents, run.begin, run.end, part_reach(options.certified, extents->box()));
 }
 
 /// Reads this rank's part of a file of patches, and what is around it. Every rank returns at the same stage.
@@ -62,7 +62,7 @@ Result<ModelPart> part_of_file(const Job& job, const TessellateOptions& options,
   const SurfaceSource source{file->size(), [&](std::uint64_t first, std::uint64_t end) {
                                return file->read(static_cast<std::size_t>(first), static_cast<std::size_t>(end));
                              }};
-  const SurfaceRun run = even_run(source.count, transport.part(), transport.part_count());
+  const PartRun run = run_of_part(source.count, transport.part(), transport.part_count());
   const Result<PartOutline> outline = find_part(source, run, options.certified, transport, options.models.fit);
   if (!outline) return outline.status();
   return load_part(source, *outline);

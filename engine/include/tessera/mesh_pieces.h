@@ -31,7 +31,10 @@ struct MeshTotals {
 /// The place of a piece in its mesh: what all pieces before it have. The piece is a mesh whose indices count its own
 /// vertices, and whose patches count from 0.
 struct PiecePlace {
-  std::uint64_t first_vertex = 0, first_triangle = 0, first_quad = 0, first_patch = 0;
+  std::uint64_t first_vertex = 0;    ///< vertices of the pieces before
+  std::uint64_t first_triangle = 0;  ///< their triangles
+  std::uint64_t first_quad = 0;      ///< their quads
+  std::uint64_t first_patch = 0;     ///< their patches
 };
 
 /// Kinds of records of a .ply file, in the order of the file.
@@ -50,7 +53,7 @@ class PlyLayout {
   /// index: write pieces as .vtp).
   static Result<PlyLayout> make(const MeshTotals& totals);
 
-  const MeshTotals& totals() const { return totals_; }
+  const MeshTotals& totals() const { return totals_; }  ///< as make() was given them
   /// The bytes before the first record.
   const std::string& header() const { return header_; }
   std::uint64_t file_bytes() const;  ///< of the whole file
@@ -79,7 +82,7 @@ class PlyPieces {
   /// `out` is a file that nothing was written to. Errors: those of PlyLayout::make().
   static Result<PlyPieces> make(OutputFile out, const MeshTotals& totals);
 
-  const PlyLayout& layout() const { return layout_; }
+  const PlyLayout& layout() const { return layout_; }  ///< where each piece goes
   /// Writes a piece. Pieces come in any order, each once. Errors: those of PlyLayout::check(); io_error and cancelled as
   /// soon as a write has failed.
   Status write(const Mesh& piece, const PiecePlace& place);
@@ -116,7 +119,7 @@ class PlyStream {
   Status commit();
 
  private:
-  class Content;
+  class [[gnu::visibility("hidden")]] Content;
   explicit PlyStream(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
 };

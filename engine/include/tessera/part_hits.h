@@ -17,15 +17,6 @@
 #pragma GCC visibility push(default)
 namespace tessera::inline abi_0_1 {
 
-/// Elements [begin, end) of a list.
-struct PartRun {
-  std::size_t begin = 0, end = 0;
-};
-
-/// Returns a part's run of `count` elements. The runs of all parts cover the list in order, of nearly equal lengths.
-/// Requires part < part_count.
-PartRun run_of_part(std::size_t count, std::size_t part, std::size_t part_count);
-
 /// Returns the model's closest hits of this part's run of the rays, run_of_part(hits.size(), part, part_count).
 ///
 /// `hits`: the closest hits of all rays, the same in every part, in the scene of this part's patches. Patch k of the

@@ -25,13 +25,6 @@ struct SurfaceSource {
   std::function<Result<Model>(std::uint64_t first, std::uint64_t end)> read;
 };
 
-/// A run of surfaces.
-struct SurfaceRun {
-  std::uint64_t first = 0, end = 0;  ///< indices into the whole model's surfaces
-};
-/// Cuts `count` surfaces into runs of equal length, up to one. Returns run `part` of `part_count`.
-SurfaceRun even_run(std::uint64_t count, std::size_t part, std::size_t part_count);
-
 /// Returns how near surfaces must come to a part to have a say in its mesh with these options: four times the largest
 /// distance of borders that are joined. `box`: the whole model's. Chains of more than four borders that are joined one
 /// to the next, over a longer way, are beyond it.
@@ -39,7 +32,7 @@ double part_reach(const TessellationOptions& options, const Box3& box);
 
 /// The surfaces of a part, before they are loaded.
 struct PartOutline {
-  SurfaceRun run;                     ///< the wanted ones
+  PartRun run;                        ///< the wanted ones
   std::vector<std::uint64_t> around;  ///< those around them, as part_of() finds them by boxes; increasing
   Box3 own_box, box;                  ///< of the wanted ones, and of the whole model
   FitError fit_error;                 ///< of the whole model
@@ -52,7 +45,7 @@ struct PartOutline {
 /// Errors, in all parts: invalid_argument (runs that leave a gap, overlap or end elsewhere than the model); those of
 /// read() and of surface_extents(), as "part 3: ..."; those of Transport::exchange(). Memory: the run's surfaces, later
 /// 50 bytes for each.
-Result<PartOutline> find_part(const SurfaceSource& source, const SurfaceRun& run, const TessellationOptions& options,
+Result<PartOutline> find_part(const SurfaceSource& source, const PartRun& run, const TessellationOptions& options,
                               Transport& transport, const FitOptions& fit = {});
 /// Reads the surfaces of a part, and those around it. Errors: those of read(), count_mismatch (it returned more or fewer
 /// surfaces, or instances).
@@ -60,7 +53,10 @@ Result<ModelPart> load_part(const SurfaceSource& source, const PartOutline& outl
 
 /// Counts of a mesh that is larger than 32-bit indices reach.
 struct PartCounts {
-  std::uint64_t patches = 0, vertices = 0, triangles = 0, quads = 0;
+  std::uint64_t patches = 0;    ///< of the patch set
+  std::uint64_t vertices = 0;   ///< of the mesh
+  std::uint64_t triangles = 0;  ///< without those that quads stand for
+  std::uint64_t quads = 0;      ///< if there are any
 };
 
 /// The mesh of a part's surfaces, and how it lies in that of the whole.

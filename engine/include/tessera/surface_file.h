@@ -32,9 +32,9 @@ class SurfaceFile {
   SurfaceFile& operator=(SurfaceFile&&) noexcept;
   ~SurfaceFile();
 
-  std::size_t size() const;     ///< the surfaces of the file, at least 1
-  std::uint64_t bytes() const;  ///< the file's size
-  const std::filesystem::path& path() const;
+  std::size_t size() const;                   ///< the surfaces of the file, at least 1
+  std::uint64_t bytes() const;                ///< the file's size
+  const std::filesystem::path& path() const;  ///< as open() was given it
 
   /// Reads the surfaces first to end - 1. The model's name is the file's. Its warnings report what is skipped before
   /// each surface of the run, and after the last surface of the file. A run of no surfaces gives an empty model.
@@ -44,7 +44,7 @@ class SurfaceFile {
   Result<Model> read(std::size_t first, std::size_t end) const;
 
  private:
-  class Content;
+  class [[gnu::visibility("hidden")]] Content;
   explicit SurfaceFile(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
 };

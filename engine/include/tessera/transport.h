@@ -21,6 +21,16 @@ namespace tessera::inline abi_0_1 {
 /// Bytes from one part to another.
 using Message = std::vector<std::byte>;
 
+/// Elements [begin, end) of a list.
+struct PartRun {
+  std::size_t begin = 0;  ///< the first
+  std::size_t end = 0;    ///< behind the last
+};
+
+/// Returns a part's run of `count` elements. The runs of all parts cover the list in order, of nearly equal lengths.
+/// Requires part < part_count.
+PartRun run_of_part(std::size_t count, std::size_t part, std::size_t part_count);
+
 /// One part's end of the lines to all parts.
 ///
 /// All parts make the same calls in the same order, each a meeting of all. An error of a call, other than a status that
@@ -56,6 +66,7 @@ class Transport {
   Status agree(const Status& own);
 
  protected:
+  /// A message of each part, for all.
   using SharedMessages = std::shared_ptr<const std::vector<Message>>;
 
   /// Does the work of exchange(), with one message for each part. Errors: those of exchange().

@@ -175,12 +175,6 @@ Status agree_on_hits(Transport& transport, const Status& own, std::size_t count)
 
 }  // namespace
 
-PartRun run_of_part(std::size_t count, std::size_t part, std::size_t part_count) {
-  const std::size_t each = count / part_count, more = count % part_count;
-  const auto begin = [&](std::size_t of) { return of * each + std::min(of, more); };
-  return {begin(part), begin(part + 1)};
-}
-
 Result<std::vector<Hit>> merge_closest(Transport& transport, std::span<const Hit> hits, std::uint64_t first_patch) {
   return guarded([&]() -> Result<std::vector<Hit>> {
     if (Status status = agree_on_hits(transport, check_hits(hits, first_patch), hits.size()); !status.ok())

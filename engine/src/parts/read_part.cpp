@@ -50,7 +50,7 @@ std::vector<T> read_all(const Message& message) {
 
 /// The run of a part, its box and its fit error.
 struct PartPlace {
-  SurfaceRun run;
+  PartRun run;
   Box3 box;
   FitError fit_error;
 };
@@ -66,10 +66,10 @@ Result<std::vector<PartPlace>> find_places(const PartPlace& own, std::uint64_t c
   for (std::size_t part = 0; part < all->size(); ++part) {
     const std::vector<PartPlace> met = read_all<PartPlace>((*all)[part]);
     if (met.size() != 1) return Status(StatusCode::count_mismatch, "part " + std::to_string(part) + " sent no place");
-    const SurfaceRun& run = met.front().run;
-    if (run.first != next || run.end < run.first)
+    const PartRun& run = met.front().run;
+    if (run.begin != next || run.end < run.begin)
       return Status(StatusCode::invalid_argument, "part " + std::to_string(part) + " has the surfaces from " +
-                                                      std::to_string(run.first) + " until " + std::to_string(run.end) +
+                                                      std::to_string(run.begin) + " until " + std::to_string(run.end) +
                                                       ", it must begin with " + std::to_string(next));
     next = run.end;
     places.push_back(met.front());
@@ -80,13 +80,13 @@ Result<std::vector<PartPlace>> find_places(const PartPlace& own, std::uint64_t c
 }
 
 /// Returns the surfaces of other parts that come within reach of one of this part's.
-Result<std::vector<SentBox>> find_nearest(std::span<const Box3> boxes, const SurfaceRun& run,
+Result<std::vector<SentBox>> find_nearest(std::span<const Box3> boxes, const PartRun& run,
                                           std::span<const PartPlace> places, double reach, Transport& transport) {
   std::vector<Message> messages(places.size());
   for (std::size_t part = 0; part < places.size(); ++part) {
     if (part == transport.part() || places[part].box.empty()) continue;
     for (std::size_t k = 0; k < boxes.size(); ++k)
-      if (are_near(places[part].box, boxes[k], reach)) append(messages[part], sent(run.first + k, boxes[k]));
+      if (are_near(places[part].box, boxes[k], reach)) append(messages[part], sent(run.begin + k, boxes[k]));
   }
   Result<std::vector<Message>> taken = transport.exchange(std::move(messages));
   if (!taken) return taken.status();
@@ -102,7 +102,7 @@ Result<std::vector<SentBox>> find_nearest(std::span<const Box3> boxes, const Sur
 }
 
 /// Appends to each message the surfaces of this part that come within reach of the boxes that another part has sent.
-std::vector<Message> answers(std::span<const Box3> boxes, const SurfaceRun& run, std::span<const Message> asked,
+std::vector<Message> answers(std::span<const Box3> boxes, const PartRun& run, std::span<const Message> asked,
                              double reach) {
   std::vector<Message> messages(asked.size());
   for (std::size_t part = 0; part < asked.size(); ++part) {
@@ -110,14 +110,14 @@ std::vector<Message> answers(std::span<const Box3> boxes, const SurfaceRun& run,
     for (const SentBox& sent : read_all<SentBox>(asked[part])) wanted.push_back(box_of(sent));
     const BoxTree tree(wanted);
     for (std::size_t k = 0; k < boxes.size(); ++k)
-      if (tree.touches(boxes[k], reach)) append(messages[part], run.first + k);
+      if (tree.touches(boxes[k], reach)) append(messages[part], run.begin + k);
   }
   return messages;
 }
 
 /// Returns the surfaces of other parts that come within reach of one of this part's, and those that come within reach
 /// of these, in increasing order: see part_of().
-Result<std::vector<std::uint64_t>> find_around(std::span<const Box3> boxes, const SurfaceRun& run,
+Result<std::vector<std::uint64_t>> find_around(std::span<const Box3> boxes, const PartRun& run,
                                                std::span<const PartPlace> places, double reach, Transport& transport) {
   const Result<std::vector<SentBox>> nearest = find_nearest(boxes, run, places, reach, transport);
   if (!nearest) return nearest.status();
@@ -171,22 +171,16 @@ Status read_listed(const SurfaceSource& source, std::span<const std::uint64_t> s
 }
 
 /// Returns where the surfaces of a run lie.
-Result<SurfaceExtents> read_extents(const SurfaceSource& source, const SurfaceRun& run, const FitOptions& fit) {
-  if (run.first >= run.end) return SurfaceExtents{};
+Result<SurfaceExtents> read_extents(const SurfaceSource& source, const PartRun& run, const FitOptions& fit) {
+  if (run.begin >= run.end) return SurfaceExtents{};
   ModelPart part;
-  if (Status status = read_into(source, run.first, run.end, part); !status.ok()) return status;
+  if (Status status = read_into(source, run.begin, run.end, part); !status.ok()) return status;
   return surface_extents(part.model, fit);
 }
 
 }  // namespace
 
-SurfaceRun even_run(std::uint64_t count, std::size_t part, std::size_t part_count) {
-  const std::uint64_t each = count / part_count, rest = count % part_count;
-  const auto begin = [&](std::uint64_t k) { return k * each + std::min(k, rest); };
-  return {begin(part), begin(part + 1)};
-}
-
-Result<PartOutline> find_part(const SurfaceSource& source, const SurfaceRun& run, const TessellationOptions& options,
+Result<PartOutline> find_part(const SurfaceSource& source, const PartRun& run, const TessellationOptions& options,
                               Transport& transport, const FitOptions& fit) {
   return guarded([&]() -> Result<PartOutline> {
     const Result<SurfaceExtents> own = guarded([&] { return read_extents(source, run, fit); });
@@ -210,15 +204,15 @@ Result<PartOutline> find_part(const SurfaceSource& source, const SurfaceRun& run
 
 Result<ModelPart> load_part(const SurfaceSource& source, const PartOutline& outline) {
   return guarded([&]() -> Result<ModelPart> {
-    const SurfaceRun& run = outline.run;
+    const PartRun& run = outline.run;
     const std::span<const std::uint64_t> around = outline.around;
     const auto before = static_cast<std::size_t>(std::ranges::lower_bound(around, run.end) - around.begin());
     ModelPart part;
     part.own_box = outline.own_box, part.box = outline.box, part.fit_error = outline.fit_error;
     if (Status status = read_listed(source, around.first(before), part); !status.ok()) return status;
     part.first = part.surfaces.size();
-    if (run.first < run.end)
-      if (Status status = read_into(source, run.first, run.end, part); !status.ok()) return status;
+    if (run.begin < run.end)
+      if (Status status = read_into(source, run.begin, run.end, part); !status.ok()) return status;
     part.end = part.surfaces.size();
     if (Status status = read_listed(source, around.subspan(before), part); !status.ok()) return status;
     return part;

@@ -56,6 +56,12 @@ Status status_of(const Message& message) {
 
 }  // namespace
 
+PartRun run_of_part(std::size_t count, std::size_t part, std::size_t part_count) {
+  const std::size_t each = count / part_count, more = count % part_count;
+  const auto begin = [&](std::size_t of) { return of * each + std::min(of, more); };
+  return {begin(part), begin(part + 1)};
+}
+
 Transport::~Transport() = default;
 
 /// Calls call() unless an earlier one has failed, and keeps its error.

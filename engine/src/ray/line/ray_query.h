@@ -166,14 +166,14 @@ struct RayQuery {
   }
 
  private:
-  /// Returns whether a root is the closest so far. Of roots at equal t it is that of the first patch, whichever was
-  /// searched first: s is finer than t, and would tell the scene of a whole model from those of its parts. Two pieces of
-  /// a patch may find one root with other last digits.
+  /// Returns whether a root is the closest so far. Of roots at equal t it is the point of an edge, then that of the first
+  /// patch, whichever was searched first: s is finer than t, and would tell the scene of a whole model from those of its
+  /// parts. Two pieces of a patch may find one root with other last digits.
   bool comes_first(const LeafRoot& root, double t) const {
     if (!found || t != best_t) return !found || t < best_t;
     const auto order = [](const LeafRoot& r) {
-      return std::tie(r.patch, r.u, r.v, r.s, r.residual, r.position.x, r.position.y, r.position.z, r.du.x, r.du.y,
-                      r.du.z, r.dv.x, r.dv.y, r.dv.z);
+      return std::make_tuple(!r.is_seam, r.patch, r.u, r.v, r.s, r.residual, r.position.x, r.position.y, r.position.z,
+                             r.du.x, r.du.y, r.du.z, r.dv.x, r.dv.y, r.dv.z);
     };
     return order(root) < order(best);
   }
