@@ -19,8 +19,11 @@ namespace tessera::inline abi_0_1 {
 
 /// The sizes of a mesh, all pieces together, and the attributes that every piece has.
 struct MeshTotals {
-  std::uint64_t vertices = 0, triangles = 0, quads = 0;
-  bool normals = false, parameters = false;
+  std::uint64_t vertices = 0;     ///< of all pieces
+  std::uint64_t triangles = 0;    ///< of all pieces, without those that quads stand for
+  std::uint64_t quads = 0;        ///< of all pieces
+  bool normals = false;           ///< Mesh::normals
+  bool parameters = false;        ///< Mesh::parameters
   bool patches = false;           ///< a patch for each face
   bool double_positions = false;  ///< positions in double: Mesh::positions_f64
 
@@ -42,7 +45,8 @@ enum class MeshRecord : std::uint8_t { vertex, triangle, quad };
 
 /// A range of bytes in a file.
 struct ByteRange {
-  std::uint64_t offset = 0, bytes = 0;
+  std::uint64_t offset = 0;  ///< from the file's begin
+  std::uint64_t bytes = 0;   ///< its length
 };
 
 /// Where each record of a .ply file stands, so that anybody can write any piece: ranks of MPI, threads, independent
