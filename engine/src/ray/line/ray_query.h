@@ -120,18 +120,18 @@ struct RayQuery {
   double near, far;         ///< range of useful roots; far shrinks to the closest so far
   double unsure = no_part;  ///< least `from` of the roots so far
   bool found = false;
-  std::uint32_t steps = 0;             ///< number of leaves and of their parts that were searched
-  bool incomplete = false;             ///< a limit of work was reached: there may be more roots
-  bool overflow = false;               ///< memory for more roots ran out
-  LeafRoot best;                       ///< if found
-  double best_t = 0;                   ///< its t
-  std::vector<LeafRoot> roots;         ///< if all are wanted
-  const OriginTest* origin = nullptr;  ///< if the line leaves a surface
-  const RootSides* trims = nullptr;    ///< if loops cut the leaf that is searched
-  const RootFilter* filter = nullptr;  ///< if not all roots count; never if all are wanted
-  std::size_t index = 0;               ///< index of the ray in the batch, for the filter
-  bool stopped = false;                ///< by the filter
-  double seam_gap = 0;                 ///< if all are wanted: the largest gap of the edges that the line passes
+  std::uint32_t steps = 0;                                  ///< number of leaves and of their parts that were searched
+  bool incomplete = false;                                  ///< a limit of work was reached: there may be more roots
+  bool overflow = false;                                    ///< memory for more roots ran out
+  LeafRoot best;                                            ///< if found
+  double best_t = std::numeric_limits<double>::infinity();  ///< its t
+  std::vector<LeafRoot> roots;                              ///< if all are wanted
+  const OriginTest* origin = nullptr;                       ///< if the line leaves a surface
+  const RootSides* trims = nullptr;                         ///< if loops cut the leaf that is searched
+  const RootFilter* filter = nullptr;                       ///< if not all roots count; never if all are wanted
+  std::size_t index = 0;                                    ///< index of the ray in the batch, for the filter
+  bool stopped = false;                                     ///< by the filter
+  double seam_gap = 0;  ///< if all are wanted: the largest gap of the edges that the line passes
 
   /// Returns t of a root that was taken. Call it where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
@@ -170,12 +170,14 @@ struct RayQuery {
   /// patch, whichever was searched first: s is finer than t, and would tell the scene of a whole model from those of its
   /// parts. Two pieces of a patch may find one root with other last digits.
   bool comes_first(const LeafRoot& root, double t) const {
-    if (!found || t != best_t) return !found || t < best_t;
+    return t < best_t || (t == best_t && wins_at_equal_t(root, best));
+  }
+  [[gnu::noinline]] static bool wins_at_equal_t(const LeafRoot& a, const LeafRoot& b) {
+    if (a.is_seam != b.is_seam) return a.is_seam;
     const auto order = [](const LeafRoot& r) {
-      return std::make_tuple(!r.is_seam, r.patch, r.u, r.v, r.s, r.residual, r.position.x, r.position.y, r.position.z,
-                             r.du.x, r.du.y, r.du.z, r.dv.x, r.dv.y, r.dv.z);
+      return std::tie(r.patch, r.u, r.v, r.s, r.residual, r.position.x, r.position.y, r.position.z);
     };
-    return order(root) < order(best);
+    return order(a) < order(b);
   }
 
   /// Adds a root that counts.
