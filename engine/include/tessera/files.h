@@ -80,6 +80,8 @@ class OutputFile {
   }
   void flush();
   void send(std::string_view bytes);
+  template <class WriteSome>
+  void send_by(std::string_view bytes, WriteSome write_some);
   void fail(int error_number);
   void see_cancel();
 

@@ -235,10 +235,11 @@ void OutputFile::flush() {
   used_ = 0;
 }
 
-void OutputFile::send(std::string_view bytes) {
+template <class WriteSome>
+void OutputFile::send_by(std::string_view bytes, WriteSome write_some) {
   see_cancel();
   while (!bytes.empty() && status_.ok()) {
-    const ssize_t sent = ::write(destination_->file.number(), bytes.data(), bytes.size());
+    const ssize_t sent = write_some(bytes);
     if (sent < 0 && errno == EINTR) {
       see_cancel();
     } else if (sent < 0) {
@@ -249,19 +250,15 @@ void OutputFile::send(std::string_view bytes) {
   }
 }
 
+void OutputFile::send(std::string_view bytes) {
+  send_by(bytes, [&](std::string_view rest) { return ::write(destination_->file.number(), rest.data(), rest.size()); });
+}
+
 void OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
-  see_cancel();
-  while (!bytes.empty() && status_.ok()) {
-    const ssize_t sent = ::pwrite(destination_->file.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (sent < 0 && errno == EINTR) {
-      see_cancel();
-    } else if (sent < 0) {
-      fail(errno);
-    } else {
-      bytes.remove_prefix(static_cast<std::size_t>(sent));
-      offset += static_cast<std::uint64_t>(sent);
-    }
-  }
+  const std::uint64_t end = offset + bytes.size();
+  send_by(bytes, [&](std::string_view rest) {
+    return ::pwrite(destination_->file.number(), rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
+  });
 }
 
 void OutputFile::see_cancel() {
