@@ -1,17 +1,9 @@
 #!/usr/bin/env bash
 # tessera_mpi on several ranks: the files of tessera byte for byte, or an error of all and no file.
 #   program_test.sh MPIEXEC TESSERA TESSERA_MPI MODELS
-set -euo pipefail
+# shellcheck source=scratch.sh
+source "$(dirname -- "${BASH_SOURCE[0]}")/scratch.sh"
 
-mpiexec=$1 tessera=$2 tessera_mpi=$3 models=$4
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-cd "$place"
-
-fail() {
-  printf '%s\n' "$*" >&2
-  exit 1
-}
 # on RANKS ARGUMENTS...: the program must succeed.
 on() {
   local ranks=$1

@@ -1,6 +1,7 @@
 // tessera_mpi tessellate: each rank meshes a part of a model.
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "commands.h"
@@ -91,14 +92,18 @@ Status write_vtp(const PartMesh& own, const PartSums& sums, const MeshTotals& to
   return write_pvtp(totals, index, transport.part_count());
 }
 
+/// The distance that the mesh keeps, in words; rates keep none.
+std::string kept(const PartSums& sums) {
+  if (!std::isfinite(sums.bound)) return "";
+  return ", within " + readable(sums.bound, 3) + " of the surfaces" + (sums.certified ? ", proven" : "");
+}
+
 Status report(const Job& job, const CommonOptions& common, const PartSums& sums, const Transport& transport,
               const Timings& timings) {
   if (!common.json)
     return print_report(job.output, job.output + ": " + counted(sums.all.vertices, "vertex", "vertices") + ", " +
-                                        counted(sums.all.triangles + 2 * sums.all.quads, "triangle") + ", within " +
-                                        readable(sums.bound, 3) + " of the surfaces" +
-                                        (sums.certified ? ", proven" : "") + ", by " +
-                                        counted(transport.part_count(), "rank") + "\n");
+                                        counted(sums.all.triangles + 2 * sums.all.quads, "triangle") + kept(sums) +
+                                        ", by " + counted(transport.part_count(), "rank") + "\n");
   Json object{{"output", job.output},
               {"models", job.inputs},
               {"ranks", transport.part_count()},
@@ -106,7 +111,7 @@ Status report(const Job& job, const CommonOptions& common, const PartSums& sums,
               {"vertices", sums.all.vertices},
               {"triangles", sums.all.triangles},
               {"quads", sums.all.quads},
-              {"bound", sums.bound},
+              {"bound", std::isfinite(sums.bound) ? Json(sums.bound) : Json()},
               {"certified", sums.certified},
               {"gap", sums.gap},
               {"bytes_sent", transport.bytes_sent()}};
