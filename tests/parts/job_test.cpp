@@ -50,7 +50,7 @@ Status add_round(Transport& transport, std::uint64_t& sum) {
 
 constexpr int rounds = 20;
 
-/// What add_round() gives after all rounds.
+/// The sum that add_round() gives after all rounds.
 std::uint64_t expected_sum(std::uint64_t count) {
   std::uint64_t sum = 0;
   for (int round = 0; round < rounds; ++round) sum = count * sum + count * (count + 1) / 2;

@@ -14,7 +14,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double nan_number = std::numeric_limits<double>::quiet_NaN();
 
-/// What part `from` sends to part `to` in a round: often nothing, now and then a megabyte.
+/// The message of part `from` to part `to` in a round: often nothing, now and then a megabyte.
 Message sample(std::size_t from, std::size_t to, std::size_t round) {
   const std::size_t mix = from * 31 + to * 17 + round * 7;
   const std::size_t size = mix % 3 == 0 ? 0 : mix % 23 == 1 ? (std::size_t{1} << 20) + mix : mix;

@@ -18,7 +18,7 @@ void check_pieces(const TessellateOptions& options, const Plan& plan);
 /// Whether a path names an index of pieces.
 bool is_index(const std::string& path);
 
-/// What is known of a mesh that was written in pieces.
+/// The facts of a mesh that was written in pieces.
 struct InPieces {
   Meshed made;  ///< without a mesh
   std::size_t pieces = 0, surfaces = 0, trimmed = 0;

@@ -79,7 +79,7 @@ struct PartMesh {
 Result<PartMesh> tessellate_part(const ModelPart& part, const TessellationOptions& options,
                                  const Execution& execution = {}, const FitOptions& fit = {});
 
-/// What all parts know of their meshes.
+/// Sums and maxima over the meshes of all parts.
 struct PartSums {
   PartCounts before;      ///< in the parts before this one
   PartCounts all;         ///< in all parts

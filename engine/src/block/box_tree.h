@@ -1,5 +1,5 @@
 #pragma once
-// Which boxes touch any of a set of boxes.
+// Finds the boxes that touch any of a set of boxes.
 
 #include <cstdint>
 #include <span>
@@ -12,13 +12,12 @@ namespace tessera::inline abi_0_1 {
 /// Whether a box, grown by `reach` to all sides, has a point in common with another. Empty boxes have none.
 bool are_near(const Box3& a, const Box3& b, double reach);
 
-/// A tree over boxes. Empty boxes touch nothing. Memory: 56 bytes per box.
+/// A tree over boxes. Empty boxes touch nothing. Memory: 112 bytes per box.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const Box3> boxes);
   /// Whether a box, grown by `reach` to all sides, has a point in common with one of the tree's.
   bool touches(const Box3& box, double reach) const;
-  const Box3& box() const { return nodes_.front().box; }  ///< of all; empty if there are none
 
  private:
   /// A node's first child follows it; `skip` is the node behind its last one.

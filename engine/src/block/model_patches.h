@@ -14,7 +14,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// What the loops of a face keep.
+/// The part of a face that its loops keep.
 struct FaceTrims {
   TrimRegion region;
   std::vector<PatchUse> uses;               ///< by patch_uses(); empty if the face is whole

@@ -38,7 +38,7 @@ struct CSet : Object {
     return &*map_;
   }
 
-  /// What takes a look at every patch.
+  /// The parts of the work that look at every patch.
   struct Extent {
     std::uint64_t revision = 0;
     Box3 box;

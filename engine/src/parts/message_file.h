@@ -12,7 +12,7 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// Which messages a file holds. All numbers are in the machine's byte order.
+/// The messages that a file holds. All numbers are in the machine's byte order.
 struct MessageFileKey {
   std::uint64_t run = 0;     ///< the checksum of the run's text
   std::uint64_t parts = 0;   ///< how many there are

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t max_rays = std::uint64_t{1} << 31, max_patches = std::uint64_t{1} << 32;
 
-/// What the part that answers for a ray must know of another part's hit. Without a hit t is infinite.
+/// The facts of a hit that the part must know that answers for its ray. Without a hit t is infinite.
 struct HitCandidate {
   std::uint32_t ray : 31 = 0, incomplete : 1 = 0;
   std::uint32_t patch = 0;  ///< of the model
