@@ -9,14 +9,32 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 21> internal_export{
-    "tessera::ApartTasks::ApartTasks", "tessera::ApartTasks::run",     "tessera::ApartTasks::~ApartTasks",
-    "tessera::allocate_aligned",       "tessera::arena_threads",       "tessera::in_own_arena",
-    "tessera::parallel_for",           "tessera::ray_kernels",         "tessera::UniformGrid::make",
-    "tessera::UniformGrid::run",       "tessera::PatchSet::Impl::box", "tessera::TrimRegion::Impl::for_points",
-    "tessera::EdgeRuns::EdgeRuns",     "tessera::EdgeRuns::curve",     "tessera::EdgeRuns::pieces",
-    "tessera::curve_parameter",        "tessera::edge_parameter",      "tessera::check_parts",
-    "tessera::ViewChecks::add",        "tessera::ViewChecks::status",  "tessera::usable_isa",
+constexpr std::array<std::string_view, 25> internal_export{
+    "tessera::ApartTasks::ApartTasks",
+    "tessera::ApartTasks::run",
+    "tessera::ApartTasks::~ApartTasks",
+    "tessera::allocate_aligned",
+    "tessera::arena_threads",
+    "tessera::in_own_arena",
+    "tessera::parallel_for",
+    "tessera::ray_kernels",
+    "tessera::UniformGrid::make",
+    "tessera::UniformGrid::run",
+    "tessera::PatchSet::Impl::box",
+    "tessera::TrimRegion::Impl::for_points",
+    "tessera::EdgeRuns::EdgeRuns",
+    "tessera::EdgeRuns::curve",
+    "tessera::EdgeRuns::pieces",
+    "tessera::curve_parameter",
+    "tessera::edge_parameter",
+    "tessera::check_parts",
+    "tessera::ViewChecks::add",
+    "tessera::ViewChecks::status",
+    "tessera::usable_isa",
+    "tessera::BoxTree::BoxTree",
+    "tessera::BoxTree::touches",
+    "tessera::are_near",
+    "tessera::io_failure",
 };
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }

@@ -1,6 +1,6 @@
 #pragma once
-// Marks the few functions of the core that the libraries above it (rays, files) also call. A shared core exports them
-// beside the public ones; tests/house/exported_symbols.cpp lists them. No one else may call them.
+// Marks the few functions of a library that the libraries above it (rays, files, parts) also call. A shared library
+// exports them beside the public ones; tests/house/exported_symbols.cpp lists them. No one else may call them.
 
 #define TESSERA_INTERNAL_EXPORT [[gnu::visibility("default")]]
 

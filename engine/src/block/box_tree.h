@@ -5,19 +5,20 @@
 #include <span>
 #include <vector>
 
+#include "base/internal_export.h"
 #include "tessera/geometry.h"
 
 namespace tessera::inline abi_0_1 {
 
 /// Whether a box, grown by `reach` to all sides, has a point in common with another. Empty boxes have none.
-bool are_near(const Box3& a, const Box3& b, double reach);
+TESSERA_INTERNAL_EXPORT bool are_near(const Box3& a, const Box3& b, double reach);
 
 /// A tree over boxes. Empty boxes touch nothing. Memory: 112 bytes per box.
 class BoxTree {
  public:
-  explicit BoxTree(std::span<const Box3> boxes);
+  TESSERA_INTERNAL_EXPORT explicit BoxTree(std::span<const Box3> boxes);
   /// Whether a box, grown by `reach` to all sides, has a point in common with one of the tree's.
-  bool touches(const Box3& box, double reach) const;
+  TESSERA_INTERNAL_EXPORT bool touches(const Box3& box, double reach) const;
 
  private:
   /// A node's first child follows it; `skip` is the node behind its last one.
