@@ -126,6 +126,26 @@ struct Lanes<float> {
     column[2] = _mm256_shuffle_ps(b1, b3, 0x44);
     column[3] = _mm256_shuffle_ps(b1, b3, 0xee);
   }
+  // Halves of four lanes.
+  static Batch load_fours(const float* low, const float* high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(low)), _mm_load_ps(high), 1);
+  }
+  /// Returns lane `k` of each half in all of its lanes.
+  static Batch lane_of_fours(Batch a, int k) {
+    return k == 0   ? _mm256_permute_ps(a, 0x00)
+           : k == 1 ? _mm256_permute_ps(a, 0x55)
+           : k == 2 ? _mm256_permute_ps(a, 0xaa)
+                    : _mm256_permute_ps(a, 0xff);
+  }
+  /// Transposes each half.
+  static void transpose_fours(Batch (&row)[4]) {
+    const __m256 a = _mm256_unpacklo_ps(row[0], row[1]), b = _mm256_unpackhi_ps(row[0], row[1]);
+    const __m256 c = _mm256_unpacklo_ps(row[2], row[3]), d = _mm256_unpackhi_ps(row[2], row[3]);
+    row[0] = _mm256_shuffle_ps(a, c, 0x44);
+    row[1] = _mm256_shuffle_ps(a, c, 0xee);
+    row[2] = _mm256_shuffle_ps(b, d, 0x44);
+    row[3] = _mm256_shuffle_ps(b, d, 0xee);
+  }
   static void transpose(Batch (&row)[width]) {
     __m256 a[8], b[8];
     for (int i = 0; i < 8; i += 2) {

@@ -49,16 +49,15 @@ template <class L, int Order>
   }
 }
 
-/// Computes these sums for four rows of 12 that fill three vectors.
-template <class L, int Order>
-[[gnu::always_inline]] inline void four_row_sums(const typename L::Scalar* net, const typename L::Scalar* weights,
+/// Computes sums[order] = sum_i weight(order, i) row(i) for four rows.
+template <class L, int Order, class Weight, class Row>
+[[gnu::always_inline]] inline void four_row_sums(const Weight& weight, const Row& row,
                                                  typename L::Batch (&sums)[Order + 1]) {
-  typename L::Batch rows[4];
-  L::load_twelves(net, rows);
-  const auto weight = [&](int order, int i) { return L::broadcast(weights[(4 * order + i) * L::width]); };
-  for (int order = 0; order <= Order; ++order) {
-    sums[order] = weight(order, 0) * rows[0];
-    for (int i = 1; i < 4; ++i) sums[order] = L::fma(weight(order, i), rows[i], sums[order]);
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    const typename L::Batch values = row(i);
+    for (int order = 0; order <= Order; ++order)
+      sums[order] = i == 0 ? weight(order, i) * values : L::fma(weight(order, i), values, sums[order]);
   }
 }
 
@@ -98,11 +97,52 @@ template <class L, int Components, int Capacity>
   }
 }
 
+/// Computes the row curves of eight samples of bicubic patches, whose rows are x and y, a whole vector, and z, half of
+/// one. Samples s and 4 + s share the vectors of z.
+template <class L, int Order>
+[[gnu::always_inline]] inline void curves_of_eight(const PointJob<typename L::Scalar>& job, int first,
+                                                   const typename L::Scalar* weights,
+                                                   RowCurves<L, Order, 3, 4>& curves) {
+  using Batch = typename L::Batch;
+  const std::uint32_t* const patch = job.patch + first;
+  Batch xy[Order + 1][8], z[Order + 1][4];
+#pragma GCC unroll 4
+  for (int s = 0; s < 4; ++s) {
+    const typename L::Scalar* nets[2];
+    Batch sums[Order + 1];
+#pragma GCC unroll 2
+    for (int h = 0; h < 2; ++h) {
+      const int k = 4 * h + s;
+      if (job.prefetched > 0) fetch_ahead<3, 3>(job, patch + k);
+      nets[h] = net_of(job, patch[k]);
+      four_row_sums<L, Order>([&](int order, int i) { return L::broadcast(weights[(4 * order + i) * L::width + k]); },
+                              [&](int i) { return Batch::load_unaligned(nets[h] + 12 * i); }, sums);
+      for (int order = 0; order <= Order; ++order) xy[order][k] = sums[order];
+    }
+    four_row_sums<L, Order>(
+        [&](int order, int i) { return L::lane_of_fours(L::load(weights + (4 * order + i) * L::width), s); },
+        [&](int i) { return L::load_fours(nets[0] + 12 * i + 8, nets[1] + 12 * i + 8); }, sums);
+    for (int order = 0; order <= Order; ++order) z[order][s] = sums[order];
+  }
+  for (int order = 0; order <= Order; ++order) {
+    L::transpose(xy[order]);
+    L::transpose_fours(z[order]);
+    for (int j = 0; j < 4; ++j) {
+      curves.by_u[order][0][j] = xy[order][j];
+      curves.by_u[order][1][j] = xy[order][4 + j];
+      curves.by_u[order][2][j] = z[order][j];
+    }
+  }
+}
+
 /// Computes the row curves of `width` samples from their patches' rows. `weights`: `[order][i][lane]`.
 template <class L, int Degree, int Order, int Components, int Capacity>
 [[gnu::always_inline]] inline void curves_by_rows(const PointJob<typename L::Scalar>& job, int first,
                                                   const typename L::Scalar* weights, int count_u, int count_v,
                                                   RowCurves<L, Order, Components, Capacity>& curves) {
+  if constexpr (Degree == 3 && Components == 3 && Order < 2 && requires { L::load_fours; }) {
+    return curves_of_eight<L, Order>(job, first, weights, curves);
+  }
   constexpr bool three_vectors = Degree == 3 && Components == 3 && L::width == 16;
   const int length = Components * count_v;
   const std::uint32_t* const patch = job.patch + first;
@@ -114,7 +154,10 @@ template <class L, int Degree, int Order, int Components, int Capacity>
       const auto* net = net_of(job, patch[s]);
       typename L::Batch sums[Order + 1];
       if constexpr (three_vectors) {
-        four_row_sums<L, Order>(net, weights + s, sums);
+        typename L::Batch rows[4];
+        L::load_twelves(net, rows);
+        four_row_sums<L, Order>([&](int order, int i) { return L::broadcast(weights[(4 * order + i) * L::width + s]); },
+                                [&](int i) { return rows[i]; }, sums);
       } else {
         row_sums<L, Order>(net + k, weights + s, count_u, length, length - k, sums);
       }
@@ -186,41 +229,57 @@ __attribute__((noinline)) void fill_any(SlotWeights<L, 0, Order>& weights, const
   weights.fill(parameters, samples, degree);
 }
 
-/// Evaluates the samples of slot k. Each slot's weights come right before it: the rows that follow keep the memory
-/// busy, and more weights at once would leave it idle for longer than instructions overlap.
+/// The weights of a slot's samples.
+template <class L, int Degree, int Order>
+struct BothWeights {
+  SlotWeights<L, Degree, Order> u, v;
+
+  [[gnu::always_inline]] void fill(const PointJob<typename L::Scalar>& job, const PointSlot& slot) {
+    if constexpr (Degree > 0) {
+      u.fill(job.u + slot.first, slot.count, Degree);
+      v.fill(job.v + slot.first, slot.count, Degree);
+    } else {
+      fill_any(u, job.u + slot.first, slot.count, job.grid.degree_u);
+      fill_any(v, job.v + slot.first, slot.count, job.grid.degree_v);
+    }
+  }
+};
+
+/// Evaluates the samples of slot k.
 template <class L, int Degree, bool Rational, int Order>
-inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k) {
+inline void evaluate_slot(const PointJob<typename L::Scalar>& job, int k,
+                          const BothWeights<L, Degree, Order>& slot_weights) {
   constexpr int components = Rational ? 4 : 3, capacity = capacity_of<Degree>;
   const int count_u = Degree > 0 ? Degree + 1 : job.grid.degree_u + 1;
   const int count_v = Degree > 0 ? Degree + 1 : job.grid.degree_v + 1;
   const PointSlot slot = job.slots[k];
-  SlotWeights<L, Degree, Order> u_weights, v_weights;
-  if constexpr (Degree > 0) {
-    u_weights.fill(job.u + slot.first, slot.count, Degree);
-    v_weights.fill(job.v + slot.first, slot.count, Degree);
-  } else {
-    fill_any(u_weights, job.u + slot.first, slot.count, count_u - 1);
-    fill_any(v_weights, job.v + slot.first, slot.count, count_v - 1);
-  }
   for (int lane = 0; lane < slot.count; lane += L::width) {
     RowCurves<L, Order, components, capacity> curves;
-    const auto* weights = u_weights.of[lane / L::width][0];
+    const auto* weights = slot_weights.u.of[lane / L::width][0];
     if constexpr (Degree > 0) {
       sample_curves<L, Degree>(job, slot.first + lane, slot.run, weights, count_u, count_v, curves);
     } else {
       any_curves<L>(job, slot.first + lane, slot.run, weights, count_u, count_v, curves);
     }
     Sample<L> sample;
-    evaluate_sample<L, Order>(curves, v_weights.of[lane / L::width], count_v, sample);
+    evaluate_sample<L, Order>(curves, slot_weights.v.of[lane / L::width], count_v, sample);
     const std::ptrdiff_t at = std::ptrdiff_t{k} * block_lanes + lane, vector = at + std::ptrdiff_t{2} * k * block_lanes;
     const LineStores<L, Way::plain, int> stores(false, nullptr, 0);
     store_sample<L, Rational, Order>(job.grid, sample, {k, 0, lane}, {vector, at, at}, stores);
   }
 }
 
+/// Each slot's weights come right before the rows of the slot before it: their long chain of operations runs beside
+/// these rows, which keep the memory busy. More weights at once would leave it idle for longer than instructions
+/// overlap.
 template <class L, int Degree, bool Rational, int Order>
 void evaluate_slots(const PointJob<typename L::Scalar>& job) {
-  for (int k = 0; k < job.slot_count; ++k) evaluate_slot<L, Degree, Rational, Order>(job, k);
+  BothWeights<L, Degree, Order> weights[2];
+  weights[0].fill(job, job.slots[0]);
+  for (int k = 0; k < job.slot_count; ++k) {
+    if (k + 1 < job.slot_count) weights[(k + 1) % 2].fill(job, job.slots[k + 1]);
+    evaluate_slot<L, Degree, Rational, Order>(job, k, weights[k % 2]);
+  }
 }
 
 /// Fixes the degrees where it pays, for doubles only the cubic; other degrees share one loop.

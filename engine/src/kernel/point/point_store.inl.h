@@ -13,21 +13,32 @@ inline void fetch_next(const T* out, int width) {
   for (int b = 0; b < width * block_lanes * static_cast<int>(sizeof(T)); b += 64) __builtin_prefetch(next + b, 1, 2);
 }
 
+/// Stores `count` samples of a slot from `lane` on.
+template <class L, Records Layout>
+[[gnu::always_inline]] inline void store_lanes(const PointStoreJob<typename L::Scalar>& job,
+                                               const typename L::Scalar* stage, const PointSlot& slot, int lane,
+                                               int count) {
+  if (job.width == 1) {
+    L::store_first(job.out[0] + slot.first + lane, L::load(stage + lane), count);
+  } else {
+    typename L::Batch p[3];
+    for (int c = 0; c < 3; ++c) p[c] = L::load(stage + c * block_lanes + lane);
+    store_records<L, Layout>(job, slot.first + lane, p, count);
+  }
+}
+
 /// Stores the samples of a slot as neighbouring records of three, or as numbers one after the other.
 template <class L, Records Layout>
 inline void store_slot(const PointStoreJob<typename L::Scalar>& job, const typename L::Scalar* stage,
                        const PointSlot& slot) {
   constexpr int together = Layout == Records::packed ? 3 : 1;
   for (int c = 0; c < job.width; c += together) fetch_next(job.out[c] + together * slot.first, together);
-  for (int lane = 0; lane < slot.count; lane += L::width) {
-    const int part = slot.count - lane < L::width ? slot.count - lane : int{L::width};
-    if (job.width == 1) {
-      L::store_first(job.out[0] + slot.first + lane, L::load(stage + lane), part);
-    } else {
-      typename L::Batch p[3];
-      for (int c = 0; c < 3; ++c) p[c] = L::load(stage + c * block_lanes + lane);
-      store_records<L, Layout>(job, slot.first + lane, p, part);
-    }
+  if (slot.count == block_lanes) {
+#pragma GCC unroll 4
+    for (int lane = 0; lane < block_lanes; lane += L::width) store_lanes<L, Layout>(job, stage, slot, lane, L::width);
+  } else {
+    for (int lane = 0; lane < slot.count; lane += L::width)
+      store_lanes<L, Layout>(job, stage, slot, lane, slot.count - lane < L::width ? slot.count - lane : int{L::width});
   }
 }
 

@@ -21,7 +21,8 @@ enum class Records { packed, arrays, strided };
 
 /// Stores the first `count` lanes of three components to the job's `out` and `stride`, from a record on.
 template <class L, Records Layout, class Job>
-inline void store_records(const Job& job, std::ptrdiff_t record, typename L::Batch (&p)[3], int count) {
+[[gnu::always_inline]] inline void store_records(const Job& job, std::ptrdiff_t record, typename L::Batch (&p)[3],
+                                                 int count) {
   using T = typename L::Scalar;
   if constexpr (Layout == Records::arrays) {
     for (int c = 0; c < 3; ++c) L::store_first(job.out[c] + record, p[c], count);
