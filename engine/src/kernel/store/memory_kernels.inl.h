@@ -3,19 +3,20 @@
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/lanes.h, kernel/store/memory_kernels.h.
 
-/// Uses 16 independent chains to hide the latency of the multiply-adds; the sum of all keeps the compiler from dropping
-/// them.
+/// Uses independent chains to hide the latency of the multiply-adds, as many as leave registers for both constants: a
+/// chain that goes through memory would take twice as long. The sum of all keeps the compiler from dropping them.
 template <class L>
 int fma_rate(std::size_t rounds, typename L::Scalar* sink) {
-  typename L::Batch chain[16];
-  for (int i = 0; i < 16; ++i) chain[i] = L::broadcast(static_cast<typename L::Scalar>(i));
+  constexpr int chains = L::registers / 4 * 3 < 16 ? L::registers / 4 * 3 : 16;
+  typename L::Batch chain[chains];
+  for (int i = 0; i < chains; ++i) chain[i] = L::broadcast(static_cast<typename L::Scalar>(i));
   const auto a = L::broadcast(static_cast<typename L::Scalar>(0.999));
   const auto b = L::broadcast(static_cast<typename L::Scalar>(0.001));
-  for (std::size_t round = 0; round < rounds; ++round) {
+  for (std::size_t k = 0; k < rounds * 16 / chains; ++k) {
 #pragma GCC unroll 16
-    for (int i = 0; i < 16; ++i) chain[i] = L::fma(chain[i], a, b);
+    for (int i = 0; i < chains; ++i) chain[i] = L::fma(chain[i], a, b);
   }
-  for (int i = 1; i < 16; ++i) chain[0] = chain[0] + chain[i];
+  for (int i = 1; i < chains; ++i) chain[0] = chain[0] + chain[i];
   L::store_first(sink, chain[0], 1);
   return L::width;
 }
