@@ -78,8 +78,11 @@ void tabulate_set(const PatchSet::Impl& set, const GridPlan::Impl& plan, GridWei
     return;
   }
   for (const BlockGroup& group : set.groups) {
-    tabulate_degree(group.degree_u, plan.u, plan, weights.u[static_cast<std::size_t>(group.degree_u)]);
-    tabulate_degree(group.degree_v, plan.v, plan, weights.v[static_cast<std::size_t>(group.degree_v)]);
+    auto& along_u = weights.u[static_cast<std::size_t>(group.degree_u)];
+    auto& along_v = weights.v[static_cast<std::size_t>(group.degree_v)];
+    tabulate_degree(group.degree_u, plan.u, plan, along_u);
+    if (group.degree_u == group.degree_v && plan.u == plan.v && along_v.empty()) along_v = along_u;
+    tabulate_degree(group.degree_v, plan.v, plan, along_v);
   }
 }
 
@@ -127,6 +130,7 @@ std::vector<std::uint8_t> edges_of(std::span<const double> parameters, std::size
                                    const PatchSet::Impl& set) {
   std::vector<std::uint8_t> edges;
   if (!by_patch) {
+    edges.reserve(count);
     for (const double t : parameters) edges.push_back(edge_of(t));
     return edges;
   }

@@ -183,6 +183,7 @@ class StagedBlock {
     const int parts_v = count_v <= layout_.longest_piece() ? 1 : (count_v + layout_.piece() - 1) / layout_.piece();
     const int piece_v = (count_v + parts_v - 1) / parts_v, piece_u = std::max(1, layout_.piece() / count_v);
     Isa isa = Isa::sse2;
+    job.lane_count = lane_count;
     begin(records);
     if (is_mesh(job)) return run_mesh(job, first_u, end_u, count_v, lane_count);
     for (job.u_begin = first_u; job.u_begin < end_u; job.u_begin += piece_u) {

@@ -272,13 +272,13 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
   constexpr int streamed = L::width < line ? line : 2 * line < block_lanes ? 2 * line : block_lanes;
   if constexpr (DegreeV == 0 || Order == 2) {
-    for (int lane = 0; lane < block_lanes; lane += streamed)
+    for (int lane = 0; lane < job.lane_count; lane += streamed)
       evaluate_lanes<L, false, DegreeV, Rational, Order, Way::asked, streamed / L::width, Outputs>(job, lane);
   } else if (job.streaming) {
     for (int lane = 0; lane < block_lanes; lane += streamed)
       evaluate_lanes<L, false, DegreeV, Rational, Order, Way::streaming, streamed / L::width, Outputs>(job, lane);
   } else {
-    for (int lane = 0; lane < block_lanes; lane += L::width)
+    for (int lane = 0; lane < job.lane_count; lane += L::width)
       evaluate_lanes<L, false, DegreeV, Rational, Order, Way::plain, 1, Outputs>(job, lane);
   }
 }
@@ -286,7 +286,7 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
 /// One loop serves all degrees, and always computes first derivatives: such grids are rare.
 template <class L, int Order>
 void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
-  for (int lane = 0; lane < block_lanes; lane += L::width)
+  for (int lane = 0; lane < job.lane_count; lane += L::width)
     job.rational ? evaluate_lanes<L, true, 0, true, Order, Way::plain, 1, Wanted::any>(job, lane)
                  : evaluate_lanes<L, true, 0, false, Order, Way::plain, 1, Wanted::any>(job, lane);
 }

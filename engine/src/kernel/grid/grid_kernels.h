@@ -38,7 +38,8 @@ struct GridJob : GridJobOutputs<T> {
   /// Each lane has parameters of its own: weights are `[iu][order][i][lane]`, edges `[iu][lane]`, likewise along v.
   /// Stores are then plain.
   bool by_lane = false;
-  int u_begin = 0, u_end = 0;  ///< the part of the grid to evaluate
+  int lane_count = block_lanes;  ///< lanes beyond it may be left out: vectors without a lane in use are
+  int u_begin = 0, u_end = 0;    ///< the part of the grid to evaluate
   int v_begin = 0, v_end = 0;
 
   std::ptrdiff_t vector_step = 3 * block_lanes;  ///< elements from one sample's vector to the next one's
