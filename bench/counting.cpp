@@ -26,6 +26,8 @@ constexpr std::string_view cases[] = {
     "evaluate.positions.interleaved.double/bicubic20000/3/9x9",
     "points.positions.random/bicubic5000/3/400000",
     "points.positions+normals.runs40/bicubic5000/3/400000",
+    "small.plan/bicubic4/3/9x9",
+    "small.grid/bicubic4/3/9x9",
     "update.positions+normals.one_in_20/bicubic10000/3/9x9",
     "transfinite.float.interleaved/coons-curves/-/1024x1024",
     "extract/bspline/3/200x200",

@@ -1,6 +1,6 @@
-// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" if stores are non-temporal at
-// any size, and ".cold" if the caches hold other memory before each call. Each case checks the values that it timed
-// against the reference evaluator before it reports. The limit is GridPlan::work().
+// Grids of many patches: evaluate.OUTPUTS.LAYOUT, with ".double" for doubles, ".streamed" or ".plain" if stores are or
+// are not non-temporal at any size, and ".cold" if the caches hold other memory before each call. Each case checks the
+// values that it timed against the reference evaluator before it reports. The limit is GridPlan::work().
 
 #include <benchmark/benchmark.h>
 
@@ -36,7 +36,11 @@ struct Case {
   CaseName name() const {
     const bool rational = set_name.starts_with("rational");
     return {"evaluate." + outputs_name() + (layout == Layout::blocks ? ".blocks" : ".interleaved") +
-                (twice ? ".double" : "") + (stores == Stores::streaming ? ".streamed" : "") + (cold ? ".cold" : ""),
+                (twice ? ".double" : "") +
+                (stores == Stores::streaming ? ".streamed"
+                 : stores == Stores::plain   ? ".plain"
+                                             : "") +
+                (cold ? ".cold" : ""),
             set_name,
             rational ? "3r" : "3",
             square(static_cast<std::size_t>(size)),
@@ -242,8 +246,10 @@ const bool registered = [] {
     for (const Layout layout : {Layout::blocks, Layout::interleaved}) {
       for (const QuantityFlags& outputs : {positions, normals, tangents, curvatures}) {
         add({"bicubic1000", 9, outputs, layout, isa});
-        for (const int size : {9, 33})
+        for (const int size : {9, 33}) {
+          add({large_set(size, outputs), size, outputs, layout, isa, 1, Stores::plain});
           add({large_set(size, outputs), size, outputs, layout, isa, 2, Stores::streaming});
+        }
         for (const int size : {4, 5, 8, 9, 16, 33})
           if (size != 33 || !outputs.duu)
             add({large_set(size, outputs), size, outputs, layout, isa, 1, Stores::streaming});
