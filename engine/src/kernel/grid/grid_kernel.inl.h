@@ -272,14 +272,15 @@ void evaluate_block(const GridJob<typename L::Scalar>& job) {
   constexpr int line = 64 / static_cast<int>(sizeof(typename L::Scalar));
   constexpr int streamed = L::width < line ? line : 2 * line < block_lanes ? 2 * line : block_lanes;
   if constexpr (DegreeV == 0 || Order == 2) {
-    for (int lane = 0; lane < job.lane_count; lane += streamed)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, Way::asked, streamed / L::width, Outputs>(job, lane);
+    for (int lane = 0; lane < block_lanes; lane += streamed)
+      if (lane < job.lane_count)
+        evaluate_lanes<L, false, DegreeV, Rational, Order, Way::asked, streamed / L::width, Outputs>(job, lane);
   } else if (job.streaming) {
     for (int lane = 0; lane < block_lanes; lane += streamed)
       evaluate_lanes<L, false, DegreeV, Rational, Order, Way::streaming, streamed / L::width, Outputs>(job, lane);
   } else {
-    for (int lane = 0; lane < job.lane_count; lane += L::width)
-      evaluate_lanes<L, false, DegreeV, Rational, Order, Way::plain, 1, Outputs>(job, lane);
+    for (int lane = 0; lane < block_lanes; lane += L::width)
+      if (lane < job.lane_count) evaluate_lanes<L, false, DegreeV, Rational, Order, Way::plain, 1, Outputs>(job, lane);
   }
 }
 
