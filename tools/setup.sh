@@ -99,7 +99,7 @@ fi
 as_root=()
 if ((EUID != 0)); then
   command -v sudo >/dev/null ||
-    fail "missing: ${missing[*]}. Installing them needs root, and there is no sudo: run as root 'apt-get install ${missing[*]}'"
+    fail "missing: ${missing[*]}. Installing them needs root, and there is no sudo: run '${BASH_SOURCE[0]} --for $purpose' as root"
   as_root=(sudo)
 fi
 apt() {
