@@ -13,6 +13,7 @@
 #include "support/ulp.h"
 #include "tessera/convert.h"
 #include "tessera/generic_callable.h"
+#include "tessera/model_part.h"
 #include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
@@ -195,6 +196,25 @@ TEST(Model, EditsKeepWeightsThatAreAllEqual) {
   ASSERT_TRUE(set.patch(0).is_rational());
   ASSERT_TRUE(set.set_control_points(0, random_cloud(random, 6)).ok());
   EXPECT_TRUE(set.patch(0).is_rational());
+}
+
+TEST(Model, ExtentsAreTheBoxesOfThePatches) {
+  Model model;
+  for (const Affine& placement : {Affine{}, Affine::translated({3, 0, 1})})
+    for (const Surface& surface : exact_surfaces()) model.surfaces.push_back({"", surface, placement});
+  model.surfaces.push_back(model.surfaces[0]);  // cut, but every point of its net counts
+  model.surfaces.back().trims =
+      std::vector<TrimLoop>{{.curves = {line({0.2, 0.2, 0}, {0.6, 0.2, 0}), line({0.6, 0.2, 0}, {0.6, 0.6, 0}),
+                                        line({0.6, 0.6, 0}, {0.2, 0.2, 0})}}};
+  const SurfaceExtents extents = value_of(surface_extents(model));
+  ASSERT_EQ(extents.boxes.size(), model.surfaces.size());
+  for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+    const Box3 box = value_of(to_bezier(model.surfaces[k])).box();
+    EXPECT_EQ(extents.boxes[k].lower, box.lower) << k;
+    EXPECT_EQ(extents.boxes[k].upper, box.upper) << k;
+  }
+  EXPECT_EQ(extents.fit_error.distance, 0);
+  EXPECT_TRUE(extents.fit_error.certified);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 25> internal_export{
+constexpr std::array<std::string_view, 26> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -34,6 +34,7 @@ constexpr std::array<std::string_view, 25> internal_export{
     "tessera::BoxTree::BoxTree",
     "tessera::BoxTree::touches",
     "tessera::are_near",
+    "tessera::tree_towards",
     "tessera::io_failure",
 };
 

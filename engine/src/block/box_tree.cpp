@@ -68,4 +68,14 @@ bool BoxTree::touches(const Box3& box, double reach) const {
   return false;
 }
 
+BoxTree tree_towards(std::span<const Box3> others, std::span<const Box3> boxes, double reach) {
+  // Where the others lie at both ends of a strip, their box holds all of it. A tree of the others tells the ends apart.
+  if (boxes.size() <= others.size()) return BoxTree(boxes);
+  const BoxTree border(others);
+  std::vector<Box3> near;
+  for (const Box3& box : boxes)
+    if (border.touches(box, 2 * reach)) near.push_back(box);  // twice, as rounding differs with the box that grows
+  return BoxTree(near);
+}
+
 }  // namespace tessera::inline abi_0_1

@@ -31,4 +31,7 @@ class BoxTree {
   std::vector<Node> nodes_;  ///< in depth-first order; the leaves are boxes
 };
 
+/// Returns a tree of the boxes that come near others. It touches the same of these as a tree of all boxes.
+TESSERA_INTERNAL_EXPORT BoxTree tree_towards(std::span<const Box3> others, std::span<const Box3> boxes, double reach);
+
 }  // namespace tessera::inline abi_0_1

@@ -116,12 +116,14 @@ Box3 mark_near(std::span<const Box3> boxes, double reach, std::vector<bool>& mar
     if (marks[k]) box.extend(boxes[k]);
   // Most surfaces are far from the border between the marked and the others.
   std::vector<std::size_t> others;
+  std::vector<Box3> others_boxes, marked;
   for (std::size_t k = 0; k < boxes.size(); ++k)
-    if (!marks[k] && are_near(boxes[k], box, reach)) others.push_back(k), box_of_others.extend(boxes[k]);
-  std::vector<Box3> marked;
+    if (!marks[k] && are_near(boxes[k], box, reach)) others.push_back(k), others_boxes.push_back(boxes[k]);
+  if (others.empty()) return box;
+  for (const Box3& other : others_boxes) box_of_others.extend(other);
   for (std::size_t k = 0; k < boxes.size(); ++k)
     if (marks[k] && are_near(boxes[k], box_of_others, reach)) marked.push_back(boxes[k]);
-  const BoxTree tree(marked);
+  const BoxTree tree = tree_towards(others_boxes, marked, reach);
   for (const std::size_t k : others) marks[k] = tree.touches(boxes[k], reach);
   return box;
 }
@@ -169,6 +171,10 @@ Result<SurfaceExtents> surface_extents(const Model& model, const FitOptions& fit
     patches.name_edges();
     SurfaceExtents extents{std::vector<Box3>(model.surfaces.size()), {}};
     for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
+      if (const BezierPatch* patch = patches.pass_whole_patch()) {
+        extents.boxes[k] = patch->hull_box();
+        continue;
+      }
       Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
       if (!grid) return in_surface(model, k, grid.status());
       if (Status status = patches.add(*std::move(grid)); !status.ok()) return status;
@@ -192,6 +198,7 @@ Result<ModelPart> part_of(const Model& model, const SurfaceExtents& extents, std
     mark_joined(model, first, end, marks);
     ModelPart part;
     part.own_box = own_box, part.box = extents.box(), part.fit_error = extents.fit_error;
+    if (model.instances.empty()) part.model.surfaces.reserve(static_cast<std::size_t>(std::ranges::count(marks, true)));
     part.model.name = model.name, part.model.unit = model.unit, part.model.file_unit = model.file_unit;
     for (std::size_t k = 0; k < marks.size(); ++k) {
       if (k == first) part.first = part.surfaces.size();

@@ -128,13 +128,14 @@ void ModelPatches::name_edges() {
 
 Status ModelPatches::add(PatchGrid grid) {
   const std::size_t k = ends_.size(), first = all_.patches.size();
-  ModelSurface surface = model_.surfaces[k];
-  const NamedFace named = k < faces_.size() ? faces_[k] : NamedFace{};
-  const bool is_trimmed = !surface.trims->empty();
-  if (named.face && !is_trimmed) surface.trims = named.face->outline;
-  if (!options_.trims || surface.trims->empty()) {
+  const NamedFace named = named_face(k);
+  const bool is_trimmed = !model_.surfaces[k].trims->empty();
+  const bool has_outline = named.face && !named.face->outline->empty();
+  if (!options_.trims || !(is_trimmed || has_outline)) {
     all_.add(k, std::move(grid));
   } else {
+    ModelSurface surface = model_.surfaces[k];
+    if (!is_trimmed) surface.trims = named.face->outline;
     const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
     // The outline of a quadric has the pace of its edges, which snapping to lines between patches would change.
     const bool is_loose = !is_trimmed && !std::holds_alternative<QuadricPiece>(surface.surface);
@@ -151,6 +152,15 @@ Status ModelPatches::add(PatchGrid grid) {
   }
   ends_.push_back(all_.patches.size());
   return {};
+}
+
+const BezierPatch* ModelPatches::pass_whole_patch() {
+  const std::size_t k = ends_.size();
+  const ModelSurface& surface = model_.surfaces[k];
+  if (!surface.trims->empty() || named_face(k).face || surface.placement != Affine{}) return nullptr;
+  const auto* const patch = std::get_if<BezierPatch>(&surface.surface);
+  if (patch) ends_.push_back(all_.patches.size());
+  return patch;
 }
 
 Status ModelPatches::add_all(const FitOptions& fit) {

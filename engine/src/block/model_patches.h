@@ -68,6 +68,8 @@ class ModelPatches {
   void name_edges();
   /// Adds the next surface's patches.
   Status add(PatchGrid grid);
+  /// Returns the next surface if it is a patch, unplaced and uncut, and passes it; null leaves it to add().
+  const BezierPatch* pass_whole_patch();
   /// Converts all surfaces of the model and adds their patches.
   Status add_all(const FitOptions& fit);
   const GatheredPatches& gathered() const { return all_; }
@@ -81,6 +83,7 @@ class ModelPatches {
     std::uint32_t first_edge = 0;
   };
 
+  NamedFace named_face(std::size_t surface) const { return surface < faces_.size() ? faces_[surface] : NamedFace{}; }
   /// Notes the patches of a face whose loops name edges. `first`: its first patch.
   void add_edges(std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops, const FaceTrims& trims,
                  std::size_t first, std::size_t places);

@@ -82,22 +82,28 @@ Result<std::vector<PartPlace>> find_places(const PartPlace& own, std::uint64_t c
 /// Returns the surfaces of other parts that come within reach of one of this part's.
 Result<std::vector<SentBox>> find_nearest(std::span<const Box3> boxes, const PartRun& run,
                                           std::span<const PartPlace> places, double reach, Transport& transport) {
+  const Box3& own = places[transport.part()].box;
   std::vector<Message> messages(places.size());
   for (std::size_t part = 0; part < places.size(); ++part) {
-    if (part == transport.part() || places[part].box.empty()) continue;
+    const Box3& other = places[part].box;
+    if (part == transport.part() || !are_near(other, own, reach)) continue;
     for (std::size_t k = 0; k < boxes.size(); ++k)
-      if (are_near(places[part].box, boxes[k], reach)) append(messages[part], sent(run.begin + k, boxes[k]));
+      if (are_near(other, boxes[k], reach)) append(messages[part], sent(run.begin + k, boxes[k]));
   }
   Result<std::vector<Message>> taken = transport.exchange(std::move(messages));
   if (!taken) return taken.status();
-  const BoxTree own(boxes);
-  std::vector<SentBox> nearest;
+  std::vector<SentBox> received;
+  std::vector<Box3> others;
   for (std::size_t part = 0; part < places.size(); ++part) {
     if (part == transport.part()) continue;
-    for (const SentBox& other : read_all<SentBox>((*taken)[part]))
-      if (own.touches(box_of(other), reach)) nearest.push_back(other);
+    std::ranges::copy(read_all<SentBox>((*taken)[part]), std::back_inserter(received));
     (*taken)[part] = {};
   }
+  for (const SentBox& other : received) others.push_back(box_of(other));
+  const BoxTree tree = tree_towards(others, boxes, reach);
+  std::vector<SentBox> nearest;
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (tree.touches(others[k], reach)) nearest.push_back(received[k]);
   return nearest;
 }
 
@@ -108,6 +114,7 @@ std::vector<Message> answers(std::span<const Box3> boxes, const PartRun& run, st
   for (std::size_t part = 0; part < asked.size(); ++part) {
     std::vector<Box3> wanted;
     for (const SentBox& sent : read_all<SentBox>(asked[part])) wanted.push_back(box_of(sent));
+    if (wanted.empty()) continue;
     const BoxTree tree(wanted);
     for (std::size_t k = 0; k < boxes.size(); ++k)
       if (tree.touches(boxes[k], reach)) append(messages[part], run.begin + k);
