@@ -29,6 +29,9 @@ struct RaycastOptions {
   MeshErrorOptions error;
   Team* team = nullptr;        ///< null: this process alone
   bool data_parallel = false;  ///< whether each process of the team has a run of the patches
+
+  /// Whether this process writes the results.
+  bool writes() const { return !team || team->leads(); }
 };
 
 /// The data of a job: surfaces, or meshes whose triangles are the patches. The scene refers to the set.

@@ -33,7 +33,7 @@ Result<HitLists> cast(const RaycastScene& scene, const RaycastOptions& options, 
 Status write_ray_hits(const Job& job, const RaycastOptions& options, const CommonOptions& common,
                       const RaycastScene& scene, std::span<const Ray> rays, OutputFile& out, Timings& timings) {
   Result<HitLists> lists = cast(scene, options, rays, timings);
-  if (!lists) return lists.status();
+  if (!lists || !options.writes()) return lists.status();
   const HitCounts counts = use_own_parameters(scene.loaded.model, *lists);
   {
     const auto phase = timings.phase("write");

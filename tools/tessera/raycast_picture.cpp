@@ -50,6 +50,7 @@ Status write_colours(const Job& job, const RaycastOptions& options, const render
                      const RaycastScene& scene, OutputFile& out, Timings& timings) {
   Result<render::Image> image = draw(scene, options, settings, timings);
   if (!image) return named(job, options, image.status());
+  if (!options.writes()) return {};
   if (const auto bar = colour_bar(settings.shade, scene)) render::add_colour_bar(*image, *bar);
   if (const std::vector<std::string> captions = scene.captions(); !captions.empty())
     render::add_caption(*image, captions);
@@ -71,6 +72,7 @@ Status write_numbers(const Job& job, const RaycastOptions& options, const render
     return render::cast_hits(closest, scene.box(), scene.loaded.model, settings, progress.execution());
   }();
   if (!image) return named(job, options, image.status());
+  if (!options.writes()) return {};
   const auto phase = timings.phase("write");
   Status status = render::write_exr(*image, out);
   return status.ok() ? out.commit() : status;

@@ -141,25 +141,25 @@ Result<render::Image> MpiTeam::draw(const RayScene& scene, const Box3& box, cons
   return image;
 }
 
-/// Traces a run of the rays in a scene that all ranks have.
-Result<std::vector<Hit>> MpiTeam::own_run_of_hits(const RayScene& scene, std::span<const Ray> rays,
-                                                  const Execution& execution) {
-  const PartRun run = run_of_part(rays.size(), transport_->part(), transport_->part_count());
-  std::vector<Hit> hits(run.end - run.begin);
-  const Status status = agree(scene.closest(rays.subspan(run.begin, hits.size()), hits, execution));
-  return status.ok() ? Result<std::vector<Hit>>(std::move(hits)) : status;
-}
-
+/// Finds the hits of this rank's run of the rays, and gives them to the leader.
 Status MpiTeam::closest(const RayScene& scene, std::optional<std::uint64_t> first_patch, std::span<const Ray> rays,
                         std::span<Hit> hits, const Execution& execution) {
-  const Result<std::vector<Hit>> run = first_patch ? closest_in_parts(*transport_, scene, *first_patch, rays, execution)
-                                                   : own_run_of_hits(scene, rays, execution);
-  if (!run && !is_of_all(run.status())) end_all_ranks(run.status());
-  job_has_failed_ = !run.ok();
-  if (!run) return run.status();
-  const auto bytes = std::as_bytes(std::span(*run));
-  const Result<std::vector<Message>> all = send_to_leader(Message(bytes.begin(), bytes.end()));
-  std::byte* place = std::as_writable_bytes(hits).data();
+  const PartRun run = run_of(rays.size());
+  const std::span<Hit> own = hits.subspan(run.begin, run.end - run.begin);
+  Status status;
+  if (first_patch) {
+    const Result<std::vector<Hit>> merged = closest_in_parts(*transport_, scene, *first_patch, rays, execution);
+    status = merged.status();
+    if (merged) std::ranges::copy(*merged, own.begin());
+  } else {
+    status = agree(scene.closest(rays.subspan(run.begin, own.size()), own, execution));
+  }
+  if (!status.ok() && !is_of_all(status)) end_all_ranks(status);
+  job_has_failed_ = !status.ok();
+  if (!status.ok()) return status;
+  const auto bytes = std::as_bytes(own);
+  const Result<std::vector<Message>> all = send_to_leader(leads() ? Message() : Message(bytes.begin(), bytes.end()));
+  std::byte* place = std::as_writable_bytes(own).data() + own.size_bytes();  // of the leader, whose run is the first
   for (const Message& sent : *all) {
     if (!sent.empty()) std::memcpy(place, sent.data(), sent.size());
     place += sent.size();

@@ -36,8 +36,6 @@ class MpiTeam final : public Team {
 
   Status agree(const Status& own);
   Result<std::vector<Message>> send_to_leader(Message message);
-  Result<std::vector<Hit>> own_run_of_hits(const RayScene& scene, std::span<const Ray> rays,
-                                           const Execution& execution);
 
   std::unique_ptr<Transport> transport_;
   bool job_has_failed_ = false;  ///< all know it
