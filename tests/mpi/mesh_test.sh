@@ -52,6 +52,23 @@ for piece in 0 1 2; do
   [[ -s pieces_000$piece.vtp ]] || fail "piece $piece is missing"
 done
 
+# Ranks of different instruction sets: the mesh is made, with a warning. All of one have the mesh of that set.
+cat >mixed <<TEXT
+#!$BASH
+[[ \${OMPI_COMM_WORLD_RANK:-\$PMI_RANK} != 1 ]] || export TESSERA_ISA=sse2
+exec "$tessera_mpi" "\$@"
+TEXT
+chmod +x mixed
+timeout 60 "$mpiexec" -n 3 ./mixed tessellate "$models/teapot.bpt" --relative 1e-3 -o mixed.ply >report 2>errors ||
+  fail "ranks of two instruction sets: $(cat errors)"
+if [[ $("$tessera" info "$models/teapot.bpt" | grep 'instruction set') == *avx2,* ]]; then
+  [[ $(grep -c 'warning: .*TESSERA_ISA' errors) == 1 ]] || fail "two instruction sets and no warning: $(cat errors)"
+fi
+TESSERA_ISA=sse2 "$tessera" tessellate "$models/teapot.bpt" --relative 1e-3 -o one.ply >/dev/null
+TESSERA_ISA=sse2 on 2 "$models/teapot.bpt" --relative 1e-3 -o many.ply
+cmp one.ply many.ply || fail "sse2: not the mesh of one process"
+[[ ! -s errors ]] || fail "one instruction set and a warning: $(cat errors)"
+
 # Failures: of all, of one rank, of the disk, of the command line.
 fails_on 3 missing.bpt -o failed.ply
 [[ $(grep -c missing.bpt errors) == 1 ]] || fail "an error of all ranks is said once: $(cat errors)"

@@ -124,11 +124,24 @@ bool is_ply(const std::string& path) { return lower_extension(path) == ".ply"; }
 /// Whether ranks read runs of a file, instead of all of it.
 bool reads_runs(const std::string& path) { return lower_extension(path) == ".bpt"; }
 
+/// Warns if only some ranks evaluate without fused multiply-adds: their parts then differ from those of the others.
+Status compare_instruction_sets(const std::string& output, MpiTeam& team) {
+  const Result<Isa> own = default_isa();
+  const bool is_sse2 = own && *own == Isa::sse2;
+  double found[] = {is_sse2 ? 1.0 : 0.0, is_sse2 ? 0.0 : 1.0};
+  if (Status status = team.transport().reduce_max(found); !status.ok()) return status;
+  if (team.leads() && found[0] + found[1] > 1)
+    warn(output +
+         ": some ranks use sse2 and others do not, so this is the mesh of neither: set TESSERA_ISA=sse2 for all");
+  return {};
+}
+
 Status mesh_together(const Job& job, const TessellateOptions& options, const CommonOptions& common, MpiTeam& team,
                      Timings& timings) {
   Transport& transport = team.transport();
   Result<OutputFile> out = open_output(is_ply(job.output) ? job.output : "/dev/null", &team);
   if (Status status = transport.agree(out.status()); !status.ok()) return status;
+  if (Status status = compare_instruction_sets(job.output, team); !status.ok()) return status;
   Result<ModelPart> part = reads_runs(job.inputs[0]) ? part_of_file(job, options, transport)
                                                      : part_of_whole(job, options, timings, transport);
   if (Status status = transport.agree(part.status()); !status.ok()) return status;
