@@ -1,5 +1,7 @@
 // Hits of the user's rays.
 
+#include <algorithm>
+
 #include "hits_table.h"
 #include "output.h"
 #include "progress.h"
@@ -20,7 +22,9 @@ Result<HitLists> cast(const RaycastScene& scene, const RaycastOptions& options, 
   }
   std::vector<Hit> hits(rays.size());
   if (const Status status = scene.closest(options, rays, hits, progress.execution()); !status.ok()) return status;
-  lists.first.push_back(0);
+  if (!options.writes()) return lists;
+  lists.first.reserve(hits.size() + 1), lists.first.push_back(0);
+  lists.hits.reserve(static_cast<std::size_t>(std::ranges::count(hits, HitKind::hit, &Hit::kind)));
   for (const Hit& hit : hits) {
     if (hit.kind == HitKind::hit) lists.hits.push_back(hit);
     lists.first.push_back(lists.hits.size());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -141,13 +142,33 @@ Result<render::Image> MpiTeam::draw(const RayScene& scene, const Box3& box, cons
   return image;
 }
 
+/// Gives the leader the hits of all runs, each from its place to its place: copies of long lists take as long as rays.
+void MpiTeam::gather_hits(std::span<Hit> hits) const {
+  std::vector<int> counts, places;
+  for (std::size_t rank = 0; rank < transport_->part_count(); ++rank) {
+    const PartRun run = run_of_part(hits.size(), rank, transport_->part_count());
+    counts.push_back(static_cast<int>(run.end - run.begin)), places.push_back(static_cast<int>(run.begin));
+  }
+  MPI_Datatype hit = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(sizeof(Hit), MPI_BYTE, &hit);
+  MPI_Type_commit(&hit);
+  const int own = counts[transport_->part()];
+  const void* const from = leads() ? MPI_IN_PLACE : hits.data() + run_of(hits.size()).begin;
+  MPI_Gatherv(from, own, hit, hits.data(), counts.data(), places.data(), hit, 0, MPI_COMM_WORLD);
+  MPI_Type_free(&hit);
+}
+
 /// Finds the hits of this rank's run of the rays, and gives them to the leader.
 Status MpiTeam::closest(const RayScene& scene, std::optional<std::uint64_t> first_patch, std::span<const Ray> rays,
                         std::span<Hit> hits, const Execution& execution) {
+  constexpr std::size_t max_rays = std::numeric_limits<int>::max();  // gather_hits() counts in int
   const PartRun run = run_of(rays.size());
   const std::span<Hit> own = hits.subspan(run.begin, run.end - run.begin);
   Status status;
-  if (first_patch) {
+  if (rays.size() > max_rays) {
+    status = agree(Status(StatusCode::unsupported, "there are " + std::to_string(rays.size()) +
+                                                       " rays; ranks share at most " + std::to_string(max_rays)));
+  } else if (first_patch) {
     const Result<std::vector<Hit>> merged = closest_in_parts(*transport_, scene, *first_patch, rays, execution);
     status = merged.status();
     if (merged) std::ranges::copy(*merged, own.begin());
@@ -157,13 +178,7 @@ Status MpiTeam::closest(const RayScene& scene, std::optional<std::uint64_t> firs
   if (!status.ok() && !is_of_all(status)) end_all_ranks(status);
   job_has_failed_ = !status.ok();
   if (!status.ok()) return status;
-  const auto bytes = std::as_bytes(own);
-  const Result<std::vector<Message>> all = send_to_leader(leads() ? Message() : Message(bytes.begin(), bytes.end()));
-  std::byte* place = std::as_writable_bytes(own).data() + own.size_bytes();  // of the leader, whose run is the first
-  for (const Message& sent : *all) {
-    if (!sent.empty()) std::memcpy(place, sent.data(), sent.size());
-    place += sent.size();
-  }
+  gather_hits(hits);
   return {};
 }
 

@@ -36,6 +36,7 @@ class MpiTeam final : public Team {
 
   Status agree(const Status& own);
   Result<std::vector<Message>> send_to_leader(Message message);
+  void gather_hits(std::span<Hit> hits) const;
 
   std::unique_ptr<Transport> transport_;
   bool job_has_failed_ = false;  ///< all know it
