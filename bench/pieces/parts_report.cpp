@@ -74,8 +74,8 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "tessera_parts_report: expected [SIDE] [TRIES], two whole numbers above 0\n");
     return 2;
   }
-  // Freed memory stays: whether malloc() returns it to the system depends on sizes, and fresh pages of a coarse mesh take
-  // longer than all else.
+  // Freed memory stays: whether malloc() returns it to the system depends on sizes, and fresh pages of a coarse mesh
+  // take longer than all else.
   ::mallopt(M_MMAP_MAX, 0), ::mallopt(M_TRIM_THRESHOLD, -1);
   Model model;
   for (const BezierPatch& patch : test::wavy_field(side, side)) model.surfaces.push_back({"", patch});

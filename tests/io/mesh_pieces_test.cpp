@@ -270,7 +270,7 @@ std::vector<T> array_of(const std::string& text, const std::string& name) {
   std::memcpy(&bytes, text.data() + at, sizeof bytes);
   EXPECT_LE(at + 8 + bytes, text.size());
   std::vector<T> values(bytes / sizeof(T));
-  std::memcpy(values.data(), text.data() + at + 8, bytes);
+  if (bytes > 0) std::memcpy(values.data(), text.data() + at + 8, bytes);
   return values;
 }
 
