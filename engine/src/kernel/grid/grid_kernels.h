@@ -38,7 +38,7 @@ struct GridJob : GridJobOutputs<T> {
   /// Each lane has parameters of its own: weights are `[iu][order][i][lane]`, edges `[iu][lane]`, likewise along v.
   /// Stores are then plain.
   bool by_lane = false;
-  int lane_count = block_lanes;  ///< lanes beyond it may be left out: vectors without a lane in use are
+  int lane_count = block_lanes;  ///< the lanes in use; vectors of others may be left out, and their outputs unset
   int u_begin = 0, u_end = 0;    ///< the part of the grid to evaluate
   int v_begin = 0, v_end = 0;
 

@@ -111,21 +111,6 @@ struct Lanes<float> {
     const __m256i from = _mm256_cmpgt_epi32(_mm256_set1_epi32(begin), index);
     _mm256_maskstore_ps(p, _mm256_andnot_si256(from, _mm256_cmpgt_epi32(_mm256_set1_epi32(end), index)), a);
   }
-  /// Sets vector l to value l of the rows at row(0), row(1), ..., of which four values are read. Rows k and k + 4 share
-  /// a vector from the start, which saves a third of a transpose's shuffles.
-  template <class Row>
-  static void load_columns(const Row& row, Batch (&column)[4]) {
-    __m256 a[4];
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; ++k)
-      a[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(row(k))), _mm_load_ps(row(4 + k)), 1);
-    const __m256 b0 = _mm256_unpacklo_ps(a[0], a[1]), b1 = _mm256_unpackhi_ps(a[0], a[1]);
-    const __m256 b2 = _mm256_unpacklo_ps(a[2], a[3]), b3 = _mm256_unpackhi_ps(a[2], a[3]);
-    column[0] = _mm256_shuffle_ps(b0, b2, 0x44);
-    column[1] = _mm256_shuffle_ps(b0, b2, 0xee);
-    column[2] = _mm256_shuffle_ps(b1, b3, 0x44);
-    column[3] = _mm256_shuffle_ps(b1, b3, 0xee);
-  }
   // Halves of four lanes.
   static Batch load_fours(const float* low, const float* high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(low)), _mm_load_ps(high), 1);
@@ -146,21 +131,21 @@ struct Lanes<float> {
     row[2] = _mm256_shuffle_ps(b, d, 0x44);
     row[3] = _mm256_shuffle_ps(b, d, 0xee);
   }
+  /// Sets vector l to value l of the rows at row(0), row(1), ..., of which four values are read. Rows k and k + 4 share
+  /// a vector from the start, which saves a third of a transpose's shuffles.
+  template <class Row>
+  static void load_columns(const Row& row, Batch (&column)[4]) {
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) column[k] = load_fours(row(k), row(4 + k));
+    transpose_fours(column);
+  }
   static void transpose(Batch (&row)[width]) {
-    __m256 a[8], b[8];
-    for (int i = 0; i < 8; i += 2) {
-      a[i] = _mm256_unpacklo_ps(row[i], row[i + 1]);
-      a[i + 1] = _mm256_unpackhi_ps(row[i], row[i + 1]);
-    }
-    for (int i = 0; i < 8; i += 4) {  // b[i + c] holds column 4 h + c in its half h
-      b[i] = _mm256_shuffle_ps(a[i], a[i + 2], 0x44);
-      b[i + 1] = _mm256_shuffle_ps(a[i], a[i + 2], 0xee);
-      b[i + 2] = _mm256_shuffle_ps(a[i + 1], a[i + 3], 0x44);
-      b[i + 3] = _mm256_shuffle_ps(a[i + 1], a[i + 3], 0xee);
-    }
-    for (int c = 0; c < 4; ++c) {
-      row[c] = _mm256_permute2f128_ps(b[c], b[4 + c], 0x20);
-      row[4 + c] = _mm256_permute2f128_ps(b[c], b[4 + c], 0x31);
+    Batch upper[4] = {row[0], row[1], row[2], row[3]}, lower[4] = {row[4], row[5], row[6], row[7]};
+    transpose_fours(upper);
+    transpose_fours(lower);
+    for (int c = 0; c < 4; ++c) {  // half h of upper[c] and lower[c] is column 4 h + c
+      row[c] = _mm256_permute2f128_ps(upper[c], lower[c], 0x20);
+      row[4 + c] = _mm256_permute2f128_ps(upper[c], lower[c], 0x31);
     }
   }
 };
