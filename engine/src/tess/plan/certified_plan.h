@@ -79,11 +79,11 @@ class CertifiedPlan {
 
   /// Stores vertices that are copies of each other once. Ring vertices that a patch owns follow its inner points.
   void share(const VertexCopies& copies);
-  bool shares_vertices() const { return !corner_sources_.empty(); }
-  bool owns_corner(std::size_t corner) const { return !shares_vertices() || corner_sources_[corner] == corner; }
+  bool shares_vertices() const { return !ring_sources_.empty(); }
+  bool owns_corner(std::size_t corner) const { return !shares_vertices() || ring_sources_[corner].corner == corner; }
   /// Whether the patch owns the points inside a border.
   bool owns_border(std::size_t border) const {
-    return !shares_vertices() || (border_sources_[border].from == border && !border_sources_[border].is_point);
+    return !shares_vertices() || (ring_sources_[border].from == border && !ring_sources_[border].is_point);
   }
   /// Returns the vertex at point k = 0 .. rate of a border of a patch with an area, in the direction of the ring.
   std::size_t ring_vertex(std::uint32_t border, int k) const;
@@ -91,8 +91,10 @@ class CertifiedPlan {
  private:
   friend class CertifiedPlanner;
   friend class PlanUpdate;
-  struct BorderSource {
-    std::uint32_t from;
+  /// Who owns the vertices of a border and of the corner at its start.
+  struct RingSource {
+    std::uint32_t corner;                     ///< the corner that owns the vertex at the start
+    std::uint32_t from;                       ///< the border that owns the points inside
     bool reversed = false, is_point = false;  ///< a point: `from` is a corner
   };
   void lay_out();
@@ -117,9 +119,8 @@ class CertifiedPlan {
   std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, and no vertices come from doubles
   std::uint32_t open_edges_ = 0;
   bool has_f64_positions_ = false;
-  std::vector<std::uint8_t> straddles_;  ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
-  std::vector<std::uint32_t> corner_sources_;  ///< `[corner]`: itself if it owns its vertex; empty if nothing is shared
-  std::vector<BorderSource> border_sources_;   ///< `[border]`
+  std::vector<std::uint8_t> straddles_;   ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
+  std::vector<RingSource> ring_sources_;  ///< `[border]`: itself if it owns its vertices; empty if nothing is shared
 };
 
 constexpr bool is_backward(std::uint32_t border) { return is_backward(all_sides[border % 4]); }

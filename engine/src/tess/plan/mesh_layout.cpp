@@ -87,15 +87,17 @@ void CertifiedPlan::count_open_edges_beside_loops(const SharedEdges& edges) {
 
 void CertifiedPlan::share(const VertexCopies& copies) {
   const auto borders = static_cast<std::uint32_t>(4 * divisions_.size());
-  corner_sources_.resize(borders);
-  border_sources_.resize(borders);
-  for (std::uint32_t border = 0; border < borders; ++border) {
-    corner_sources_[border] = border;
-    border_sources_[border] = {border};
+  ring_sources_.resize(borders);
+  for (std::uint32_t border = 0; border < borders; ++border) ring_sources_[border] = {border, border};
+  for (const VertexCopies::Corner& copy : copies.corners) ring_sources_[copy.to].corner = copy.from;
+  for (const VertexCopies::Border& copy : copies.borders) {
+    ring_sources_[copy.to].from = copy.from;
+    ring_sources_[copy.to].reversed = copy.reversed;
   }
-  for (const VertexCopies::Corner& copy : copies.corners) corner_sources_[copy.to] = copy.from;
-  for (const VertexCopies::Border& copy : copies.borders) border_sources_[copy.to] = {copy.from, copy.reversed};
-  for (const VertexCopies::Corner& pole : copies.poles) border_sources_[pole.to] = {pole.from, false, true};
+  for (const VertexCopies::Corner& pole : copies.poles) {
+    ring_sources_[pole.to].from = pole.from;
+    ring_sources_[pole.to].is_point = true;
+  }
   lay_out();
 }
 
@@ -116,8 +118,8 @@ std::size_t CertifiedPlan::ring_vertex(std::uint32_t border, int k) const {
   const auto start = [this](std::uint32_t of) {
     return first_vertex_[of / 4] + divisions_[of / 4].inner_count() + owned_ring_count(of / 4, of % 4);
   };
-  if (k == 0) return start(shares_vertices() ? corner_sources_[border] : border);
-  const BorderSource source = shares_vertices() ? border_sources_[border] : BorderSource{border};
+  const RingSource source = shares_vertices() ? ring_sources_[border] : RingSource{border, border};
+  if (k == 0) return start(source.corner);
   if (source.is_point) return start(source.from);
   const bool opposite = (is_backward(border) != is_backward(source.from)) != source.reversed;
   const std::size_t before = owns_corner(source.from) ? 1 : 0;
