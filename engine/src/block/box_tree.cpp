@@ -12,13 +12,6 @@ int longest_axis(const Box3& box) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-Box3 grown(const Box3& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
-
-bool meet(const Box3& a, const Box3& b) {
-  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
-         a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
-}
-
 }  // namespace
 
 bool are_near(const Box3& a, const Box3& b, double reach) {

@@ -10,6 +10,15 @@
 
 namespace tessera::inline abi_0_1 {
 
+/// Returns a box that is larger to all sides. Of an empty one, an empty one.
+inline Box3 grown(const Box3& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
+
+/// Whether two boxes have a point in common. Boxes without a point, which are all infinite, have none.
+inline bool meet(const Box3& a, const Box3& b) {
+  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y &&
+         a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
+}
+
 /// Whether a box, grown by `reach` to all sides, has a point in common with another. Empty boxes have none.
 TESSERA_INTERNAL_EXPORT bool are_near(const Box3& a, const Box3& b, double reach);
 

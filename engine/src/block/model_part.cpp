@@ -109,23 +109,30 @@ void mark_joined(const Model& model, std::size_t first, std::size_t end, std::ve
   }
 }
 
-/// Marks the surfaces whose boxes come within reach of those of marked ones. Returns the box of those marked before.
-Box3 mark_near(std::span<const Box3> boxes, double reach, std::vector<bool>& marks) {
-  Box3 box, box_of_others;
-  for (std::size_t k = 0; k < boxes.size(); ++k)
-    if (marks[k]) box.extend(boxes[k]);
-  // Most surfaces are far from the border between the marked and the others.
-  std::vector<std::size_t> others;
-  std::vector<Box3> others_boxes, marked;
-  for (std::size_t k = 0; k < boxes.size(); ++k)
-    if (!marks[k] && are_near(boxes[k], box, reach)) others.push_back(k), others_boxes.push_back(boxes[k]);
-  if (others.empty()) return box;
-  for (const Box3& other : others_boxes) box_of_others.extend(other);
-  for (std::size_t k = 0; k < boxes.size(); ++k)
-    if (marks[k] && are_near(boxes[k], box_of_others, reach)) marked.push_back(boxes[k]);
-  const BoxTree tree = tree_towards(others_boxes, marked, reach);
-  for (const std::size_t k : others) marks[k] = tree.touches(boxes[k], reach);
+Box3 box_of(std::span<const Box3> boxes) {
+  Box3 box;
+  for (const Box3& one : boxes) box.extend(one);
   return box;
+}
+
+/// Marks the surfaces whose boxes come within reach of inner ones, and returns their boxes.
+std::vector<Box3> mark_ring(std::span<const Box3> boxes, std::span<const Box3> inner, double reach,
+                            std::vector<bool>& marks) {
+  std::vector<Box3> ring, others_boxes, border;
+  // Most surfaces are far from the border between inner ones and others. Twice the reach, as rounding differs with the
+  // box that grows.
+  std::vector<std::size_t> others;
+  const Box3 towards_others = grown(box_of(inner), 2 * reach);
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    if (meet(towards_others, boxes[k]) && !marks[k]) others.push_back(k), others_boxes.push_back(boxes[k]);
+  const Box3 towards_inner = grown(box_of(others_boxes), 2 * reach);
+  for (const Box3& box : inner)
+    if (meet(towards_inner, box)) border.push_back(box);
+  if (border.empty()) return ring;
+  const BoxTree tree = tree_towards(others_boxes, border, reach);
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (tree.touches(others_boxes[k], reach)) marks[others[k]] = true, ring.push_back(others_boxes[k]);
+  return ring;
 }
 
 /// Adds what a part has of the instances, and of their shapes.
@@ -191,23 +198,25 @@ Result<ModelPart> part_of(const Model& model, const SurfaceExtents& extents, std
     const std::span<const Box3> boxes = extents.boxes;
     if (Status status = check_part(model, boxes, first, end, reach); !status.ok()) return status;
     std::vector<bool> marks(boxes.size());
-    std::fill(marks.begin() + static_cast<std::ptrdiff_t>(first), marks.begin() + static_cast<std::ptrdiff_t>(end),
-              true);
-    const Box3 own_box = mark_near(boxes, reach, marks);
-    mark_near(boxes, reach, marks);
+    const auto begin = marks.begin();
+    std::fill(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end), true);
+    const std::span<const Box3> own = boxes.subspan(first, end - first);
+    mark_ring(boxes, mark_ring(boxes, own, reach, marks), reach, marks);
     mark_joined(model, first, end, marks);
     ModelPart part;
-    part.own_box = own_box, part.box = extents.box(), part.fit_error = extents.fit_error;
-    if (model.instances.empty()) part.model.surfaces.reserve(static_cast<std::size_t>(std::ranges::count(marks, true)));
+    part.own_box = box_of(own), part.box = extents.box(), part.fit_error = extents.fit_error;
     part.model.name = model.name, part.model.unit = model.unit, part.model.file_unit = model.file_unit;
     for (std::size_t k = 0; k < marks.size(); ++k) {
       if (k == first) part.first = part.surfaces.size();
-      if (!marks[k]) continue;
-      part.surfaces.push_back(k);
-      if (model.instances.empty()) part.model.surfaces.push_back(model.surfaces[k]);
+      if (marks[k]) part.surfaces.push_back(k);
     }
     part.end = part.first + (end - first);
-    take_instances(model, marks, part.model);
+    if (model.instances.empty()) {
+      part.model.surfaces.reserve(part.surfaces.size());
+      for (const std::uint64_t k : part.surfaces) part.model.surfaces.push_back(model.surfaces[k]);
+    } else {
+      take_instances(model, marks, part.model);
+    }
     return part;
   });
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 
 namespace tessera::inline abi_0_1 {
@@ -36,29 +37,36 @@ OwnPatches own_patches(const ModelPart& part, const PatchSet& set) {
   return own;
 }
 
+/// Leaves of a list only what stands from `begin` until `end`, less `offset`.
 template <class T>
-void keep(std::vector<T>& values, std::size_t begin, std::size_t end) {
+void keep(std::vector<T>& values, std::size_t begin, std::size_t end, std::size_t offset = 0) {
   if (values.empty()) return;
-  values.resize(end);
-  if (begin > 0) values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(begin));
+  constexpr std::size_t block = 4096;  // stays in a first-level cache between both loops
+  for (std::size_t k = begin; (begin > 0 || offset > 0) && k < end; k += block) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto to = from - static_cast<std::ptrdiff_t>(begin);
+    const auto count = static_cast<std::ptrdiff_t>(std::min(block, end - k));
+    std::copy(from, from + count, to);
+    std::for_each(to, to + count, [&](T& value) { value -= static_cast<T>(offset); });
+  }
+  values.resize(end - begin);
 }
 
-/// Leaves of a mesh only what some patches have, from `begin` until `end`.
-void keep_patches(Mesh& mesh, std::size_t first_patch, const MeshCapacity& begin, const MeshCapacity& end) {
-  keep(mesh.positions, 3 * begin.vertices, 3 * end.vertices);
-  keep(mesh.positions_f64, 3 * begin.vertices, 3 * end.vertices);
-  keep(mesh.normals, 3 * begin.vertices, 3 * end.vertices);
-  keep(mesh.parameters, 2 * begin.vertices, 2 * end.vertices);
-  keep(mesh.patches, begin.triangles, end.triangles);
-  keep(mesh.indices, 3 * begin.triangles, 3 * end.triangles);
-  keep(mesh.quads, 4 * begin.quads, 4 * end.quads);
-  keep(mesh.quad_patches, begin.quads, end.quads);
-  const auto lower = [](std::vector<std::uint32_t>& values, std::size_t by) {
-    if (by == 0) return;
-    for (std::uint32_t& value : values) value -= static_cast<std::uint32_t>(by);
+/// Leaves of a mesh only what some patches have, from `begin` until `end`. Errors: cancelled.
+Status keep_patches(Mesh& mesh, std::size_t first_patch, const MeshCapacity& begin, const MeshCapacity& end,
+                    const Execution& execution) {
+  const auto keep_list = [&](std::size_t list) {
+    if (list == 0) keep(mesh.indices, 3 * begin.triangles, 3 * end.triangles, begin.vertices);
+    if (list == 1) keep(mesh.quads, 4 * begin.quads, 4 * end.quads, begin.vertices);
+    if (list == 2) keep(mesh.positions, 3 * begin.vertices, 3 * end.vertices);
+    if (list == 3) keep(mesh.positions_f64, 3 * begin.vertices, 3 * end.vertices);
+    if (list == 4) keep(mesh.normals, 3 * begin.vertices, 3 * end.vertices);
+    if (list == 5) keep(mesh.parameters, 2 * begin.vertices, 2 * end.vertices);
+    if (list == 6) keep(mesh.patches, begin.triangles, end.triangles, first_patch);
+    if (list == 7) keep(mesh.quad_patches, begin.quads, end.quads, first_patch);
   };
-  lower(mesh.indices, begin.vertices), lower(mesh.quads, begin.vertices);
-  lower(mesh.patches, first_patch), lower(mesh.quad_patches, first_patch);
+  const Execution quiet{.cancel = execution.cancel};
+  return parallel_for(8, 1, quiet, [&](std::size_t list, std::size_t) { keep_list(list); });
 }
 
 float largest(std::span<const float> values) { return values.empty() ? 0 : *std::ranges::max_element(values); }
@@ -97,7 +105,8 @@ Result<PartMesh> tessellate_part(const ModelPart& part, const TessellationOption
     made.mesh = *std::move(mesh);
     if (Status status = plan->run(*set, made.mesh.views(), execution); !status.ok()) return status;
     const auto [first, end] = own_patches(part, *set);
-    keep_patches(made.mesh, first, plan->before(first), plan->before(end));
+    if (Status status = keep_patches(made.mesh, first, plan->before(first), plan->before(end), execution); !status.ok())
+      return status;
     made.own = {end - first, made.mesh.vertex_count(), made.mesh.triangle_count(), made.mesh.quad_count()};
     made.bound = options.rates ? plan->bound() : double{largest(plan->bounds().subspan(first, end - first))};
     made.gap = plan->gap(), made.certified = plan->certified();
