@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "block/box_tree.h"
 #include "block/model_patches.h"
+#include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
@@ -169,6 +170,15 @@ Status check_part(const Model& model, std::span<const Box3> boxes, std::size_t f
   return check_topology(model);
 }
 
+/// Sets the boxes of surfaces that are Bezier patches as they stand.
+Status box_patches(const Model& model, std::span<Box3> boxes) {
+  constexpr std::size_t grain = 4096;
+  return parallel_for(boxes.size(), grain, {}, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      if (const auto* const patch = std::get_if<BezierPatch>(&model.surfaces[k].surface)) boxes[k] = patch->hull_box();
+  });
+}
+
 }  // namespace
 
 Result<SurfaceExtents> surface_extents(const Model& model, const FitOptions& fit) {
@@ -177,11 +187,9 @@ Result<SurfaceExtents> surface_extents(const Model& model, const FitOptions& fit
     ModelPatches patches(model, {});
     patches.name_edges();
     SurfaceExtents extents{std::vector<Box3>(model.surfaces.size()), {}};
+    if (Status status = box_patches(model, extents.boxes); !status.ok()) return status;
     for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-      if (const BezierPatch* patch = patches.pass_whole_patch()) {
-        extents.boxes[k] = patch->hull_box();
-        continue;
-      }
+      if (patches.pass_whole_patch()) continue;
       Result<PatchGrid> grid = to_bezier(model.surfaces[k], fit);
       if (!grid) return in_surface(model, k, grid.status());
       if (Status status = patches.add(*std::move(grid)); !status.ok()) return status;

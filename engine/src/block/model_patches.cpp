@@ -154,13 +154,13 @@ Status ModelPatches::add(PatchGrid grid) {
   return {};
 }
 
-const BezierPatch* ModelPatches::pass_whole_patch() {
+bool ModelPatches::pass_whole_patch() {
   const std::size_t k = ends_.size();
   const ModelSurface& surface = model_.surfaces[k];
-  if (!surface.trims->empty() || named_face(k).face || surface.placement != Affine{}) return nullptr;
-  const auto* const patch = std::get_if<BezierPatch>(&surface.surface);
-  if (patch) ends_.push_back(all_.patches.size());
-  return patch;
+  if (!surface.trims->empty() || named_face(k).face || surface.placement != Affine{}) return false;
+  if (!std::holds_alternative<BezierPatch>(surface.surface)) return false;
+  ends_.push_back(all_.patches.size());
+  return true;
 }
 
 Status ModelPatches::add_all(const FitOptions& fit) {

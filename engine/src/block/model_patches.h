@@ -68,8 +68,8 @@ class ModelPatches {
   void name_edges();
   /// Adds the next surface's patches.
   Status add(PatchGrid grid);
-  /// Returns the next surface if it is a patch, unplaced and uncut, and passes it; null leaves it to add().
-  const BezierPatch* pass_whole_patch();
+  /// Passes the next surface if it is a patch, unplaced and uncut. Returns whether it is; the others are left to add().
+  bool pass_whole_patch();
   /// Converts all surfaces of the model and adds their patches.
   Status add_all(const FitOptions& fit);
   const GatheredPatches& gathered() const { return all_; }
