@@ -1,8 +1,7 @@
 #pragma once
 // Patch-contiguous output of the grid kernel: values of a block, `[value][lane]`, are transposed for a few lanes at a
-// time and joined with the rest of each lane's last vector, so that memory receives only whole aligned vectors.
-// Vectors in which one lane ends and the next begins are assembled at the end. Plain stores of short vectors go where
-// the values belong, and nothing is joined.
+// time and joined with the rest of each lane's last vector, so that memory receives only whole aligned vectors, plain
+// or streamed. Vectors in which one lane ends and the next begins are assembled at the end.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/line_kernels.h, kernel/isa/lanes.h.
 
@@ -119,46 +118,8 @@ template <class L, int Step>
   if (job.count % width > 0) put_rest<L, Step>(job, rows, l);
 }
 
-/// Whether plain stores of vectors need not be aligned: few short ones cross a cache line, which costs less than to
-/// join each with the one before.
-template <class L>
-inline constexpr bool stores_anywhere = L::width * sizeof(typename L::Scalar) < 64;
-
-/// Puts the group of lanes from l on by plain stores, where the values belong. The state keeps these places alone.
-template <class L, int Step>
-[[gnu::always_inline]] inline void put_in_place(const LineJob<typename L::Scalar>& job, int l) {
-  constexpr int group = lane_group<L>;
-  constexpr std::ptrdiff_t width = L::width;
-  LineState<typename L::Scalar>& state = *job.state;
-  typename L::Scalar* to[group];
-#pragma GCC unroll 8
-  for (int k = 0; k < group; ++k) {
-    to[k] = state.next[l + k] + state.end[l + k];
-    state.next[l + k] += job.count;
-  }
-  const auto* const rows = job.rows + l;
-  const std::ptrdiff_t step = Step > 0 ? Step : job.step;
-  if (job.count < width) {
-    for (std::ptrdiff_t row = 0; row < job.count; ++row)
-      for (int k = 0; k < group; ++k) to[k][row] = rows[row * step + k];
-    return;
-  }
-  const std::ptrdiff_t last = job.count - width;  // the last vector may have values of the one before
-  for (std::ptrdiff_t row = 0;; row = std::min(row + width, last)) {
-    typename L::Batch column[group];
-    load_group<L, Step>(job, rows + row * step, column);
-#pragma GCC unroll 8
-    for (int k = 0; k < group; ++k) column[k].store_unaligned(to[k] + row);
-    if (row == last) return;
-  }
-}
-
 template <class L, int Step>
 void put_groups(const LineJob<typename L::Scalar>& job) {
-  if (stores_anywhere<L> && !job.streaming) {
-    for (int l = 0; l < job.lane_count; l += lane_group<L>) put_in_place<L, Step>(job, l);
-    return;
-  }
   for (int l = 0; l < job.lane_count; l += lane_group<L>) put_group<L, Step>(job, l);
 }
 
@@ -211,7 +172,6 @@ class PartialVectors {
 
 template <class L>
 void end_lines(const LineState<typename L::Scalar>& state, int lane_count, bool streaming) {
-  if (stores_anywhere<L> && !streaming) return;
   PartialVectors<L> partial(streaming);
   for (int l = 0; l < lane_count; ++l) {
     const bool shared = state.first[l] != nullptr, several = state.next[l] != state.first[l];

@@ -22,8 +22,7 @@ struct BorderJob {
 };
 
 /// Results of a block's lanes on their way to one array each, from piece to piece of the grid. Values that do not yet
-/// fill a whole aligned vector wait here, unless they are written in place; value `end` of the vector at `next` comes
-/// next.
+/// fill a whole aligned vector wait here.
 template <class T>
 struct LineState {
   static constexpr int values = 64 / static_cast<int>(sizeof(T));
