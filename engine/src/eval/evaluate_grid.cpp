@@ -174,7 +174,7 @@ Status evaluate_views(const PatchSet::Impl& patches, const GridPlan& plan, const
   if (!order) return order.status();
   const GridPlan::Impl& inner = impl_of(plan);
   const auto& kernels = kernel::kernels(inner.isa);
-  const StageLayout<T> layout(out);
+  const StageLayout<T> layout(out, inner.isa);
   const bool streaming = views_stream(layout, plan.capacity(), execution.stores);
   if constexpr (sizeof(T) == 4) {
     if (*order == 0 && layout.one_record() && inner.is_flat)

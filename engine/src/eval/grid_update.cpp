@@ -24,7 +24,7 @@ class GridUpdate::Impl {
              const Execution& execution) {
     const Result<int> order = start(set, plan, edits, out, execution);
     if (!order) return order.status();
-    const StageLayout<T> layout(out);
+    const StageLayout<T> layout(out, impl_of(plan).isa);
     const bool streaming = views_stream(layout, edits.patch.size() * impl_of(plan).samples(), execution.stores);
     return each_block(set, plan, edits, *order, streaming, execution,
                       [&](const UpdateCall& call) { return EditedGrids<T>(call, layout, out); });

@@ -1,5 +1,5 @@
 #pragma once
-// Moves a block's outputs from lanes to patch-contiguous views, through a stage in the first-level cache.
+// Moves a block's outputs from lanes to patch-contiguous views, through a stage in the first or second level cache.
 
 #include <algorithm>
 #include <array>
@@ -75,7 +75,7 @@ class StageLayout {
     std::ptrdiff_t width = 1, stride = 1, first = 0, step = 1;
   };
 
-  explicit StageLayout(const QuantityViews<T>& out) {
+  StageLayout(const QuantityViews<T>& out, Isa isa) : rows_(isa == Isa::avx512 ? stage_rows / 4 : stage_rows) {
     for_each_value_quantity([&](const auto& quantity) {
       const auto& view = quantity.of(out);
       if (view.empty()) return;
@@ -102,12 +102,14 @@ class StageLayout {
   int record_width() const { return record_width_; }  ///< values of all wanted views
   /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small,
   /// and so few that their stores overlap with the next computation.
-  int piece() const { return std::max(min_samples, stage_rows / std::max(record_width_, 1)); }
+  int piece() const { return std::max(min_samples, rows_ / std::max(record_width_, 3)); }
   /// The most samples that are staged at once. Longer pieces avoid that a row is cut: both parts compute its curves.
   int longest_piece() const { return 2 * piece(); }
 
-  /// 12 kB of floats, 18 kB of doubles: a first-level cache of 32 kB holds the net and the weights as well.
-  static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 192 : 144;
+  /// Vectors of 64 bytes are whole lines: with 12 kB of floats or 18 kB of doubles a first-level cache of 32 kB holds the
+  /// net and the weights as well. Shorter vectors get four times as much, in the second level: longer runs of each array
+  /// leave fewer lines that are streamed in two parts, which cost a Xeon more than half of its rate.
+  static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 768 : 576;
   /// The most rows in the stage, with those that a tile may reach beyond the last.
   static constexpr std::size_t max_rows =
       2 * std::max<std::size_t>(min_samples * max_arrays, stage_rows) + 3 * lanes * (max_fields + 1);
@@ -144,6 +146,7 @@ class StageLayout {
     field.step = field.width;
   }
 
+  int rows_;  ///< of lanes that a piece fills about
   std::array<Field, max_fields> fields_{};
   std::array<Array, max_arrays> arrays_{}, columns_{};
   std::size_t field_count_ = 0, array_count_ = 0, column_count_ = 0;
@@ -151,7 +154,7 @@ class StageLayout {
   bool one_record_ = false;
 };
 
-/// Evaluates a block piece by piece into a stage in the first-level cache, and writes each piece to the records of its
+/// Evaluates a block piece by piece into the stage, and writes each piece to the records of its
 /// patches, one patch per lane. Lives on a task's stack, where its memory begins uninitialised; allocates nothing.
 template <class T>
 class StagedBlock {
@@ -300,7 +303,7 @@ class StagedBlock {
   std::array<kernel::LineState<T>, Layout::max_arrays> states_;
   std::array<std::ptrdiff_t, Layout::max_arrays>
       waiting_;  ///< rows at the start of each array that are not written yet
-  static constexpr std::size_t max_samples = 2 * Layout::stage_rows;  // if only kinds are wanted: as for one value
+  static constexpr std::size_t max_samples = 2 * Layout::stage_rows / 3;  // of the narrowest records: see piece()
   alignas(cache_line) std::array<std::array<std::uint8_t, max_samples * lanes>, 2> kinds_;
 };
 

@@ -156,7 +156,7 @@ Status UniformGrid::update(PatchSet::Impl& set, const PatchEdits& edits, const T
                            const QuantityViews<float>& out, const Execution& execution) const {
   const GridPlan::Impl& plan = impl_of(plan_);
   const kernel::KernelTable& kernels = kernel::kernels(plan.isa);
-  const StageLayout<float> layout(out);
+  const StageLayout<float> layout(out, plan.isa);
   const bool streaming = views_stream(layout, edits.patch.size() * plan.samples(), execution.stores);
   const UpdateCall call{set, plan, kernels, edits, touched, out.normal.empty() ? 0 : 1, streaming};
   const BorderWriter borders(set, kernels, rate_u_, rate_v_, out.position, border_weights_u_, border_weights_v_);
