@@ -295,9 +295,8 @@ void evaluate_by_lane(const GridJob<typename L::Scalar>& job) {
 /// Degrees are fixed where it pays: the loop over any degree is within 15% except for positions of low degree. Rational
 /// second derivatives are as much code as all the rest.
 template <class L, int DegreeV, bool Rational, int Order>
-inline constexpr bool is_fixed = fixed_degrees &&
-                                 (DegreeV == 3 ? !Rational || Order < 2
-                                               : Order < 2 && (!Rational || sizeof(typename L::Scalar) == 4));
+inline constexpr bool is_fixed =
+    DegreeV == 3 ? !Rational || Order < 2 : Order < 2 && (!Rational || sizeof(typename L::Scalar) == 4);
 
 template <class L, int DegreeV, int Order>
 void choose_weights(const GridJob<typename L::Scalar>& job) {
@@ -334,7 +333,7 @@ template <class L>
 Isa evaluate_grid(const GridJob<typename L::Scalar>& job) {
   if (job.by_lane) {
     order_of(job) == 2 ? evaluate_by_lane<L, 2>(job) : evaluate_by_lane<L, 1>(job);
-  } else if (fixed_degrees && sizeof(typename L::Scalar) == 4 && is_bicubic_mesh(job)) {
+  } else if (sizeof(typename L::Scalar) == 4 && is_bicubic_mesh(job)) {
     evaluate_block<L, 3, false, 1, Wanted::mesh>(job);
   } else if (job.degree_v == 1) {
     choose_order<L, 1>(job);

@@ -16,8 +16,6 @@ namespace isa_avx2 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx2;
-/// Grids of degrees 1 to 3 have loops of their own.
-constexpr bool fixed_degrees = true;
 
 /// An immediate operand.
 template <int bits>

@@ -15,8 +15,6 @@ namespace isa_avx512 {
 namespace {
 
 constexpr Isa this_isa = Isa::avx512;
-/// Grids of degrees 1 to 3 have loops of their own.
-constexpr bool fixed_degrees = true;
 template <class T>
 using BatchOf = xsimd::batch<T, xsimd::avx512f>;
 

@@ -14,8 +14,6 @@ namespace isa_neon64 {
 namespace {
 
 constexpr Isa this_isa = Isa::neon64;
-/// Grids of degrees 1 to 3 have loops of their own.
-constexpr bool fixed_degrees = true;
 
 // The functions that the kernels call by the name of xsimd. On NEON, Debian's xsimd (8.1) divides floats and takes
 // roots by estimates, and its minimum and maximum treat NaN differently from x86: other bits. These functions replace

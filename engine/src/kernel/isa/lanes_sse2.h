@@ -16,8 +16,6 @@ namespace isa_sse2 {
 namespace {
 
 constexpr Isa this_isa = Isa::sse2;
-/// Grids of degrees 1 to 3 have no loops of their own, to limit the code's size.
-constexpr bool fixed_degrees = false;
 
 template <class T>
 struct Lanes;

@@ -19,8 +19,7 @@ void write_vertices_of_order(const MeshVertexJob& job) {
 #endif
   const bool cubic = job.grid.degree_u == 3 && job.grid.degree_v == 3;
   if (cubic && !job.grid.rational) return PatchVertices<L, 3, false, Order>(job).write();
-  if constexpr (fixed_degrees)
-    if (cubic) return PatchVertices<L, 3, true, Order>(job).write();
+  if (cubic) return PatchVertices<L, 3, true, Order>(job).write();
   if (job.grid.rational) {
     PatchVertices<L, 0, true, Order>(job).write();
   } else {

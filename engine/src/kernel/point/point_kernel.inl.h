@@ -163,7 +163,7 @@ template <class L, int Degree, int Order, int Components, int Capacity>
       }
       for (int order = 0; order <= Order; ++order) tiles[order][s] = sums[order];
     };
-    if constexpr (Order < 2 && (Degree > 0 || !fixed_degrees)) {
+    if constexpr (Order < 2 && Degree > 0) {
 #pragma GCC unroll 16
       for (int s = 0; s < L::width; ++s) sum_sample(s);
     } else {
@@ -287,12 +287,10 @@ template <class L, int Order>
 void choose_degree(const PointJob<typename L::Scalar>& job) {
   const int degree = job.grid.degree_u == job.grid.degree_v ? job.grid.degree_u : 0;
   if (job.grid.rational) return evaluate_slots<L, 0, true, Order>(job);
-  if constexpr (fixed_degrees) {
-    if (degree == 3) return evaluate_slots<L, 3, false, Order>(job);
-    if constexpr (Order < 2 && sizeof(typename L::Scalar) == 4) {
-      if (degree == 2) return evaluate_slots<L, 2, false, Order>(job);
-      if (degree == 1) return evaluate_slots<L, 1, false, Order>(job);
-    }
+  if (degree == 3) return evaluate_slots<L, 3, false, Order>(job);
+  if constexpr (Order < 2 && sizeof(typename L::Scalar) == 4) {
+    if (degree == 2) return evaluate_slots<L, 2, false, Order>(job);
+    if (degree == 1) return evaluate_slots<L, 1, false, Order>(job);
   }
   evaluate_slots<L, 0, false, Order>(job);
 }
