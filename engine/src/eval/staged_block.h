@@ -101,14 +101,15 @@ class StageLayout {
   bool one_record() const { return one_record_; }
   int record_width() const { return record_width_; }  ///< values of all wanted views
   /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small,
-  /// and so few that their stores overlap with the next computation.
+  /// and so few that their stores overlap with the next computation. Records of fewer than three values count as three,
+  /// since kinds have no room for more samples.
   int piece() const { return std::max(min_samples, rows_ / std::max(record_width_, 3)); }
   /// The most samples that are staged at once. Longer pieces avoid that a row is cut: both parts compute its curves.
   int longest_piece() const { return 2 * piece(); }
 
   /// Vectors of 64 bytes are whole lines: with 12 kB of floats or 18 kB of doubles a first-level cache of 32 kB holds the
-  /// net and the weights as well. Shorter vectors get four times as much, in the second level: longer runs of each array
-  /// leave fewer lines that are streamed in two parts, which cost a Xeon more than half of its rate.
+  /// net and the weights as well. Shorter vectors get four times as much, in the second level: runs of each array
+  /// are then longer, and fewer lines are streamed in two parts. A Xeon streams tangents twice as fast with it.
   static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 768 : 576;
   /// The most rows in the stage, with those that a tile may reach beyond the last.
   static constexpr std::size_t max_rows =
@@ -146,7 +147,7 @@ class StageLayout {
     field.step = field.width;
   }
 
-  int rows_;  ///< of lanes that a piece fills about
+  int rows_;  ///< values of a lane that a piece has room for
   std::array<Field, max_fields> fields_{};
   std::array<Array, max_arrays> arrays_{}, columns_{};
   std::size_t field_count_ = 0, array_count_ = 0, column_count_ = 0;
@@ -154,8 +155,8 @@ class StageLayout {
   bool one_record_ = false;
 };
 
-/// Evaluates a block piece by piece into the stage, and writes each piece to the records of its
-/// patches, one patch per lane. Lives on a task's stack, where its memory begins uninitialised; allocates nothing.
+/// Evaluates a block piece by piece into the stage, and writes each piece to the records of its patches, one patch per
+/// lane. Lives on a task's stack, where its memory begins uninitialised; allocates nothing.
 template <class T>
 class StagedBlock {
  public:
