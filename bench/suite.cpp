@@ -52,20 +52,18 @@ class CountReporter : public benchmark::BenchmarkReporter {
   bool failed = false;
 };
 
-bool is_counted(const Case& c, const std::string& isa) {
-  if (c.name.threads != 1 || (c.name.isa != "-" && c.name.isa != isa)) return false;
-  const auto names = counted_cases();
-  return std::find(names.begin(), names.end(), c.name.work()) != names.end();
+bool is_counted(const Case& c, std::string_view isa) {
+  return c.name.threads == 1 && (c.name.isa == "-" || c.name.isa == isa);
 }
 
-bool all_counted_cases_exist() {
-  bool all = true;
-  for (const std::string_view name : counted_cases())
-    if (std::none_of(cases().begin(), cases().end(), [&](const Case& c) { return c.name.work() == name; })) {
-      std::printf("failed: no case has the name %s\n", std::string(name).c_str());
-      all = false;
-    }
-  return all;
+void register_counted(const Case& c) {
+  const auto run = [&c](benchmark::State& state) {
+    std::printf("counting %s\n", c.name.work().c_str());
+    std::fflush(stdout);
+    name_count(c.name.work());
+    c.run(state);
+  };
+  benchmark::RegisterBenchmark(c.name.work().c_str(), run)->UseManualTime()->Iterations(1);
 }
 
 std::string joined(std::initializer_list<const std::string*> parts) {
@@ -105,18 +103,18 @@ bool run_counted() {
   const Result<Isa> isa = default_isa();
   if (!isa) return std::printf("failed: %s\n", isa.status().message().c_str()), false;
   start_counting();
-  for (const Case& c : cases()) {
-    if (!is_counted(c, std::string(name(*isa)))) continue;
-    const auto run = [&c](benchmark::State& state) {
-      std::printf("counting %s\n", c.name.work().c_str());
-      std::fflush(stdout);
-      name_count(c.name.work());
-      c.run(state);
-    };
-    benchmark::RegisterBenchmark(c.name.work().c_str(), run)->UseManualTime()->Iterations(1);
+  bool complete = true;
+  for (const std::string_view work : counted_cases()) {
+    bool exists = false;
+    for (const Case& c : cases()) {
+      if (c.name.work() != work) continue;
+      exists = true;
+      if (is_counted(c, name(*isa))) register_counted(c);
+    }
+    if (!exists) std::printf("failed: no case has the name %s\n", std::string(work).c_str());
+    complete = complete && exists;
   }
   CountReporter reporter;
-  const bool complete = all_counted_cases_exist();
   benchmark::RunSpecifiedBenchmarks(&reporter);
   return complete && !reporter.failed;
 }
