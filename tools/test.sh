@@ -113,5 +113,5 @@ fi
 status=0
 rm -f "build/$preset/Testing/results.xml"
 ctest --preset "$preset" -j "$(nproc)" --output-junit Testing/results.xml "${ctest_arguments[@]}" || status=$?
-[[ ! -e build/$preset/Testing/results.xml ]] || tools/isa_summary.sh "build/$preset/Testing/results.xml"
+[[ ! -e build/$preset/Testing/results.xml ]] || tools/test_summary.sh "build/$preset/Testing/results.xml"
 exit "$status"

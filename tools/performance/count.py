@@ -118,6 +118,13 @@ class Comparison:
     def is_good(self):
         return not (self.grown or self.gone or self.new)
 
+    def faults(self, threshold):
+        """What is not good, in a line that names the cases."""
+        grown = [f"{name} {ratio:.3f} times" for name, _, _, ratio in self.rows if name in self.grown]
+        return "; ".join(f"{len(cases)} {word}: {', '.join(cases)}" for word, cases in (
+            (f"counts grew by more than {100 * threshold:g}%", grown), ("counts are new", self.new),
+            ("counts are gone", self.gone)) if cases)
+
     def text(self):
         rows = [("case", "baseline", "now", "ratio", "")]
         for name, before, now, ratio in self.rows:
@@ -167,8 +174,7 @@ def check(isa, counts, facts, path, threshold, filtered):
     if unexplained:
         print(f"{isa}: the last commit raised the baseline of {', '.join(unexplained)}; its message must say why")
     if not comparison.is_good():
-        print(f"{isa}: {len(comparison.grown)} counts grew by more than {100 * threshold:g}%, {len(comparison.new)} are "
-              f"new, {len(comparison.gone)} are gone. If that is meant, 'tools/perf count --update' in the same commit, "
+        print(f"{isa}: {comparison.faults(threshold)}. If that is meant, 'tools/perf count --update' in the same commit, "
               f"whose body says why")
     elif comparison.shrunk:
         print(f"{isa}: {len(comparison.shrunk)} counts are smaller: 'tools/perf count --update' keeps them so")
