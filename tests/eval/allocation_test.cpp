@@ -1,12 +1,17 @@
-// After the first call a repeated call allocates nothing.
+// After the first call a repeated call allocates nothing, and calls need no more stack than evaluate.h states.
 
 #include "support/allocations.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <functional>
+
+#include <tbb/task_arena.h>
 
 #include "base/impl_access.h"
 #include "eval/uniform_grid.h"
-#include "support/grids.h"
+#include "support/points.h"
 
 namespace tessera::test {
 namespace {
@@ -47,6 +52,49 @@ TEST(Allocations, NoneWhenEvaluatingAgain) {
   const UniformGrid grid = value_of(UniformGrid::make(set, 8, 8, std::nullopt));
   expect_no_allocation([&] { return grid.run(impl_of(set), {.position = a.views().position}, {}); });
 }
+
+/// Runs a call in a thread with a stack of this size, and no other thread. A call that needs more ends the program.
+void run_with_stack(std::size_t bytes, std::function<void()> call) {
+  pthread_attr_t attributes;
+  ASSERT_EQ(pthread_attr_init(&attributes), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&attributes, bytes), 0);
+  pthread_t thread;
+  const auto start = [](void* data) -> void* {
+    tbb::task_arena(1).execute(*static_cast<std::function<void()>*>(data));
+    return nullptr;
+  };
+  ASSERT_EQ(pthread_create(&thread, &attributes, start, &call), 0);
+  pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which makes frames larger
+template <class T>
+void evaluate_with_stack(std::size_t bytes, Precision precision) {
+  Random random(82);
+  PatchSetOptions options;
+  options.blocks = {true, true, false, true, true, true};
+  PatchSet set = set_of(mixed_patches(random, 4, 8), options);
+  const auto t = uniform_parameters(33);
+  const GridPlan plan = value_of(GridPlan::make(set, t, t, {.precision = precision}));
+  GridUpdate update = value_of(GridUpdate::make(set));
+  AllBuffers<T> grids(plan);
+  const auto samples = random_samples<T>(random, set.patch_count(), 3000);
+  AllBuffers<T> scattered(samples.size());
+  const std::uint32_t first = 0;
+  const std::vector<Vec3> net(set.patch(first).points().size(), Vec3{1, 2, 3});
+  run_with_stack(bytes, [&] {
+    EXPECT_TRUE(evaluate(set, plan, grids.views()).ok());
+    EXPECT_TRUE(evaluate(set, samples.views(), scattered.views()).ok());
+    EXPECT_TRUE(update.run(set, plan, {{&first, 1}, net}, grids.views()).ok());
+  });
+}
+
+TEST(Stack, OfTheStatedSizeSuffices) {
+  evaluate_with_stack<float>(1 << 20, Precision::single_precision);
+  evaluate_with_stack<double>(1 << 20, Precision::double_precision);
+}
+#endif
 
 }  // namespace
 }  // namespace tessera::test

@@ -12,10 +12,10 @@ TEST(Limits, AreMeasuredForEachIsa) {
   for (const Isa isa : available_isas()) {
     const Limits limits = value_of(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
     EXPECT_EQ(limits.isa, isa);
-    // A processor with SSE2 does more than 0.1 G operations per second of any kind, and none does 10 T.
+    // No machine is outside of this, sanitized and busy as it may be: a rate in another unit would be.
     for (const double rate : {limits.float_operations_per_second, limits.double_operations_per_second,
                               limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second}) {
-      EXPECT_GT(rate, 1e8);
+      EXPECT_GT(rate, 1e6);
       EXPECT_LT(rate, 1e13);
     }
     EXPECT_EQ(limits.store_bytes_per_second,
@@ -23,13 +23,13 @@ TEST(Limits, AreMeasuredForEachIsa) {
   }
 }
 
-/// 12, 36, 50 and 72 operations per point of a bicubic; in proportion to the order; 4/3 of it and 4 more if rational;
-/// 30 for curvatures.
 TEST(Limits, ABufferThatNoMemoryHoldsIsRefused) {
   const auto limits = measure_limits({.store_bytes = std::size_t{1} << 63});
   EXPECT_EQ(limits.status().code(), StatusCode::out_of_memory);
 }
 
+/// 12, 36, 50 and 72 operations per point of a bicubic; in proportion to the order; 4/3 of it and 4 more if rational;
+/// 30 for curvatures.
 TEST(Limits, WorkFollowsTheStatedCounts) {
   Random random(61);
   const auto u = uniform_parameters(5), v = uniform_parameters(8);

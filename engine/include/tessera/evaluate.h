@@ -3,7 +3,7 @@
 // that follow edits of control points. Callable, ruled and Coons surfaces over a grid, without patches.
 //
 // Memory: plans and maps own theirs and keep no argument; outputs go to the caller's memory. Threads: any number of
-// calls at once on const objects, into memory that does not overlap; they run in the caller's TBB arena.
+// calls at once on const objects, into memory that does not overlap, in the caller's TBB arena. Stack: 1 MiB each.
 
 #include <cstddef>
 #include <cstdint>
