@@ -101,9 +101,8 @@ class StageLayout {
   bool one_record() const { return one_record_; }
   int record_width() const { return record_width_; }  ///< values of all wanted views
   /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small,
-  /// and so few that their stores overlap with the next computation. Records of fewer than three values count as three,
-  /// since kinds have no room for more samples.
-  int piece() const { return std::max(min_samples, rows_ / std::max(record_width_, 3)); }
+  /// and so few that their stores overlap with the next computation.
+  int piece() const { return std::clamp(rows_ / std::max(record_width_, 1), min_samples, max_samples / 2); }
   /// The most samples that are staged at once. Longer pieces avoid that a row is cut: both parts compute its curves.
   int longest_piece() const { return 2 * piece(); }
 
@@ -111,6 +110,7 @@ class StageLayout {
   /// net and the weights as well. Shorter vectors get four times as much, in the second level: runs of each array
   /// are then longer, and fewer lines are streamed in two parts. A Xeon streams tangents twice as fast with it.
   static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 768 : 576;
+  static constexpr int max_samples = 2 * stage_rows / 3;  ///< room for kinds; records of three values need no more
   /// The most rows in the stage, with those that a tile may reach beyond the last.
   static constexpr std::size_t max_rows =
       2 * std::max<std::size_t>(min_samples * max_arrays, stage_rows) + 3 * lanes * (max_fields + 1);
@@ -304,8 +304,7 @@ class StagedBlock {
   std::array<kernel::LineState<T>, Layout::max_arrays> states_;
   std::array<std::ptrdiff_t, Layout::max_arrays>
       waiting_;  ///< rows at the start of each array that are not written yet
-  static constexpr std::size_t max_samples = 2 * Layout::stage_rows / 3;  // of the narrowest records: see piece()
-  alignas(cache_line) std::array<std::array<std::uint8_t, max_samples * lanes>, 2> kinds_;
+  alignas(cache_line) std::array<std::array<std::uint8_t, Layout::max_samples * lanes>, 2> kinds_;
 };
 
 }  // namespace tessera::inline abi_0_1
