@@ -47,7 +47,7 @@ void keep(std::vector<T>& values, std::size_t begin, std::size_t end, std::size_
     const auto to = from - static_cast<std::ptrdiff_t>(begin);
     const auto count = static_cast<std::ptrdiff_t>(std::min(block, end - k));
     std::copy(from, from + count, to);
-    std::for_each(to, to + count, [&](T& value) { value -= static_cast<T>(offset); });
+    if (offset > 0) std::for_each(to, to + count, [&](T& value) { value -= static_cast<T>(offset); });
   }
   values.resize(end - begin);
 }
