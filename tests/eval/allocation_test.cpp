@@ -53,6 +53,7 @@ TEST(Allocations, NoneWhenEvaluatingAgain) {
   expect_no_allocation([&] { return grid.run(impl_of(set), {.position = a.views().position}, {}); });
 }
 
+#ifndef __SANITIZE_ADDRESS__  // which makes frames larger
 /// Runs a call in a thread with a stack of this size, and no other thread. A call that needs more ends the program.
 void run_with_stack(std::size_t bytes, std::function<void()> call) {
   pthread_attr_t attributes;
@@ -68,7 +69,6 @@ void run_with_stack(std::size_t bytes, std::function<void()> call) {
   pthread_attr_destroy(&attributes);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which makes frames larger
 template <class T>
 void evaluate_with_stack(std::size_t bytes, Precision precision) {
   Random random(82);
