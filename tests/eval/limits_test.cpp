@@ -8,14 +8,20 @@
 namespace tessera::test {
 namespace {
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr double slowest = 1e6;  // loops of kernels are many times as long
+#else
+constexpr double slowest = 1e8;
+#endif
+
 TEST(Limits, AreMeasuredForEachIsa) {
   for (const Isa isa : available_isas()) {
     const Limits limits = value_of(measure_limits({.isa = isa, .store_bytes = 1 << 20}));
     EXPECT_EQ(limits.isa, isa);
-    // No machine is outside of this, sanitized and busy as it may be: a rate in another unit would be.
+    // A processor with SSE2 does more than 0.1 G operations per second of any kind, and none does 10 T.
     for (const double rate : {limits.float_operations_per_second, limits.double_operations_per_second,
                               limits.plain_store_bytes_per_second, limits.streaming_store_bytes_per_second}) {
-      EXPECT_GT(rate, 1e6);
+      EXPECT_GT(rate, slowest);
       EXPECT_LT(rate, 1e13);
     }
     EXPECT_EQ(limits.store_bytes_per_second,
