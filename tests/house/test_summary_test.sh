@@ -26,14 +26,15 @@ expect() {
   [[ $found == "$1" ]] || { printf 'found  "%s"\nwanted "%s"\n' "$found" "$1" >&2; exit 1; }
 }
 
-results eval.sse2=run io.sse2=run eval.avx2=run io.avx2=run eval.avx512=notrun io.avx512=notrun kernel.neon64=run Bpt.One=run
-expect "instruction sets: sse2 2 passed, avx2 2 passed, avx512 2 skipped, neon64 1 passed"
+ending() { printf 'failed: %s\n  second\n  a.sse2\n  1 < 2 && "b"\n  %s\n  last' "$1" "$1"; }
+results eval.sse2=run io.sse2=run eval.avx2=run io.avx2=fail eval.avx512=notrun io.avx512=notrun kernel.neon64=run Bpt.One=run
+expect "instruction sets: sse2 2 passed, avx2 1 passed and 1 failed, avx512 2 skipped, neon64 1 passed
+$(ending io.avx2)"
 results kernel.neon64=notrun eval.avx2=run
 expect "instruction sets: avx2 1 passed, neon64 1 skipped"
 results Bpt.One=run
 expect ""
 
-ending() { printf 'failed: %s\n  second\n  a.sse2\n  1 < 2 && "b"\n  %s\n  last' "$1" "$1"; }
 results eval.avx2=run io.avx2=fail Bpt.One=fail Bpt.Two=run
 expect "instruction sets: avx2 1 passed and 1 failed
 $(ending io.avx2)

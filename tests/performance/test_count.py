@@ -22,11 +22,13 @@ class Comparing(unittest.TestCase):
         found = count.Comparison({"a": 1010, "b": 1011, "c": 980}, base, 0.01)
         self.assertEqual((found.grown, found.shrunk, found.is_good()), (["b"], ["c"], False))
         self.assertIn("MORE", found.text())
+        self.assertEqual(found.faults(0.01), "1 counts grew by more than 1%: b 1.011 times")
         self.assertTrue(count.Comparison({"a": 1010, "b": 900, "c": 1000}, base, 0.01).is_good())
 
     def test_cases_that_come_and_go_are_faults_but_where_a_filter_left_them_out(self):
         found = count.Comparison({"a": 1, "new": 1}, {"a": 1, "old": 1}, 0.01)
         self.assertEqual((found.gone, found.new, found.is_good()), (["old"], ["new"], False))
+        self.assertEqual(found.faults(0.01), "1 counts are new: new; 1 counts are gone: old")
         self.assertTrue(count.Comparison({"a": 1}, {"a": 1, "old": 1}, 0.01, filtered=True).is_good())
 
     def test_other_compilers_and_libraries_are_told(self):
