@@ -1,6 +1,5 @@
 #include "suite.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
@@ -52,6 +51,7 @@ class CountReporter : public benchmark::BenchmarkReporter {
   bool failed = false;
 };
 
+/// Whether counting runs this variant of a case: on one thread, and with this ISA if it has one.
 bool is_counted(const Case& c, std::string_view isa) {
   return c.name.threads == 1 && (c.name.isa == "-" || c.name.isa == isa);
 }
