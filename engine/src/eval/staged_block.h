@@ -110,7 +110,7 @@ class StageLayout {
   /// net and the weights as well. Shorter vectors get four times as much, in the second level: runs of each array
   /// are then longer, and fewer lines are streamed in two parts. A Xeon streams tangents twice as fast with it.
   static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 768 : 576;
-  static constexpr int max_samples = 2 * stage_rows / 3;  ///< room for kinds; records of three values need no more
+  static constexpr int max_samples = 2 * stage_rows / 3;  ///< the most that longest_piece() is: kinds have this room
   /// The most rows in the stage, with those that a tile may reach beyond the last.
   static constexpr std::size_t max_rows =
       2 * std::max<std::size_t>(min_samples * max_arrays, stage_rows) + 3 * lanes * (max_fields + 1);
