@@ -311,10 +311,11 @@ inline int order_of(const GridJob<T>& job) {
   return job.du || job.dv || job.normal || job.normal_kind ? 1 : 0;
 }
 
+/// Whether a job is what Wanted::mesh writes, and no output more.
 template <class T>
 inline bool is_bicubic_mesh(const GridJob<T>& job) {
-  return job.degree_u == 3 && job.degree_v == 3 && !job.rational && job.position && job.normal && !job.du && !job.dv &&
-         !job.normal_kind;
+  return job.degree_u == 3 && job.degree_v == 3 && !job.rational && job.position && job.normal && order_of(job) == 1 &&
+         !job.du && !job.dv && !job.normal_kind;
 }
 
 template <class L, int DegreeV>
