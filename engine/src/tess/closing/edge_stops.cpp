@@ -137,7 +137,8 @@ void EdgeStops::put_on_side(std::uint32_t patch, Side side, std::vector<SidePoin
     const auto first = std::ranges::upper_bound(points, low, {}, &SidePoint::at);
     if (first == points.begin()) return;
     const SidePoint from = *(first - 1);
-    const auto last = std::ranges::lower_bound(points, high, {}, &SidePoint::at);
+    // A run without length ends at the point before `first`, so the search for its end begins there.
+    const auto last = std::ranges::lower_bound(first, points.end(), high, {}, &SidePoint::at);
     const auto is_other = [&](const SidePoint& of) { return of.below != from.below || of.above != from.above; };
     if ((is_above ? from.below : from.above) || std::any_of(first, last, is_other)) return;
     std::vector<SidePoint> inside;
