@@ -69,6 +69,7 @@ class Closer {
     };
     for (const PatchVertex& vertex : points_.vertices) of_points_.push_back(use(vertex));
     for (const auto& [a, b] : segments_.same()) same_.push_back({use(a), use(b)});
+    for (const EdgeSegment& gap : points_.gaps) gaps_.push_back({use(gap.low), use(gap.high)});
   }
   std::uint32_t boundary_count(std::uint32_t patch) const {
     if (const CutPatch* const cut = cut_of(patch)) return static_cast<std::uint32_t>(cut->vertices.size());
@@ -133,6 +134,34 @@ class Closer {
       const std::uint32_t* const of = &of_points_[point.first];
       for (std::uint32_t k = 1; k < point.count; ++k) sets_->unite(of[0], of[k]);
       if (point.vertex != no_id) sets_->unite(of[0], count_ + point.vertex);
+    }
+    join_gaps();
+  }
+
+  /// Makes a point of each line that closes a gap, if both of its ends are one place: its other vertices are there too.
+  void join_gaps() {
+    if (gaps_.empty()) return;
+    std::vector<std::uint32_t> places(count_, none);  // by vertex of a point: its place
+    for (const EdgePoint& point : points_.points)
+      for (std::uint32_t k = 0; k < point.count && !is_open_[point.edge]; ++k)
+        places[of_points_[point.first + k]] = sets_->find(of_points_[point.first + k]).member;
+    UnionFind lines(count_);
+    for (const auto& [a, b] : same_) lines.unite(a, b);
+    for (const auto& [a, b] : gaps_) lines.unite(a, b);
+    std::vector<std::uint32_t> ends(count_, none);  // by line: the place of its ends
+    std::vector<std::uint8_t> is_apart(count_, 0);
+    for (const auto& gap : gaps_) {
+      const std::uint32_t line = lines.find(gap[0]).member;
+      for (const std::uint32_t end : gap) {
+        if (places[end] == none) continue;
+        is_apart[line] |= ends[line] != none && ends[line] != places[end];
+        ends[line] = places[end];
+      }
+    }
+    for (const auto& gap : gaps_) {
+      const std::uint32_t line = lines.find(gap[0]).member;
+      for (const std::uint32_t end : gap)
+        if (ends[line] != none && !is_apart[line]) sets_->unite(end, ends[line]);
     }
   }
 
@@ -240,13 +269,37 @@ class Closer {
     }
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
       if (is_open_[edge]) out_.gaps[edge] = rounded_up(widths_[edge] / 2);
-    for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
-      out_.closed_segments += is_open_[edge] || !runs_.meet(edge) ? -std::int64_t{points_.counts[edge].more}
-                                                                  : std::int64_t{points_.counts[edge].own};
-    for (const EdgeSegment& gap : points_.gaps) {
-      const std::uint32_t low = places_[number(gap.low)], high = places_[number(gap.high)];
-      out_.closed_segments += std::int64_t{low == high && low != none} - !gap.begins();
+    for (const std::uint32_t own : points_.own) out_.closed_segments += own;
+    out_.closed_segments -= count_open();
+    for (std::size_t k = 0; k < gaps_.size(); ++k) {
+      const std::uint32_t low = places_[gaps_[k][0]], high = places_[gaps_[k][1]];
+      out_.closed_segments += std::int64_t{low == high && low != none} - !points_.gaps[k].begins();
     }
+  }
+
+  /// Counts the segments of edges on the boundary of the mesh. The boundary of triangles, modulo 2, stays that of their
+  /// images where vertices are joined, so an even number of segments between two places has triangles on all of its
+  /// sides, even where those of a sliver have become lines.
+  std::int64_t count_open() {
+    std::int64_t open = 0;
+    std::vector<std::array<std::uint32_t, 2>> segments;
+    for (const auto& [low, high, is_joined] : points_.spans) {
+      if (is_open_[points_.points[low].edge]) {
+        open += !is_joined;  // its inserted vertices are left out
+        continue;
+      }
+      for (std::uint32_t k = low; k < high; ++k) {
+        const std::uint32_t a = sets_->find(of_points_[points_.points[k].first]).member;
+        const std::uint32_t b = sets_->find(of_points_[points_.points[k + 1].first]).member;
+        if (a != b) segments.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
+    std::ranges::sort(segments);
+    for (std::size_t from = 0, to = 0; from < segments.size(); from = to) {
+      while (to < segments.size() && segments[to] == segments[from]) ++to;
+      open += (to - from) % 2;
+    }
+    return open;
   }
 
   const std::atomic<bool>* cancel_;
@@ -262,7 +315,7 @@ class Closer {
   std::uint32_t count_ = 0;
   std::vector<std::uint8_t> is_used_;
   std::vector<std::uint32_t> of_points_;
-  std::vector<std::array<std::uint32_t, 2>> same_;
+  std::vector<std::array<std::uint32_t, 2>> same_, gaps_;  ///< vertices; of lines that close gaps: their segments
   std::vector<Vec3> own_;
   std::vector<std::uint8_t> is_open_;
   std::vector<double> widths_;  ///< by edge: the largest distance of the faces' points

@@ -14,7 +14,7 @@ class Maker {
 
   Result<EdgePoints> run(const std::atomic<bool>* cancel) {
     const std::size_t edges = runs_.edges().edges.size();
-    out_.counts.resize(edges);
+    out_.own.resize(edges);
     for (std::uint32_t edge = 0; edge < edges; ++edge) {
       if (cancel && cancel->load()) return Status(StatusCode::cancelled, "cancelled by the caller");
       segments_.clear();
@@ -46,8 +46,8 @@ class Maker {
     std::ranges::sort(stops_, {}, &Stop::s);
     find_places(same, least_same_share * (edge.range.to - edge.range.from));
     if (segments_.front().run->use != segments_.back().run->use) insert_missing();
-    for (const EdgeSegment& segment : segments_)
-      if (is_alone(segment)) ++(segment.begins() ? out_.counts[id].own : out_.counts[id].more);
+    for (const EdgeSegment& segment : segments_) out_.own[id] += is_alone(segment) && segment.begins();
+    put_spans();
     put(id, edge, same);
   }
 
@@ -72,11 +72,25 @@ class Maker {
     }
   }
 
-  /// Whether a segment is no point, and no other patch has triangles on it.
-  bool is_alone(const EdgeSegment& segment) const {
+  /// Whether another patch has triangles on a segment.
+  bool is_joined(const EdgeSegment& segment) const {
     const EdgeRun& run = *segment.run;
-    return segment.start != segment.end &&
-           !(run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)]);
+    return run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)];
+  }
+  /// Whether a single triangle has a segment.
+  bool is_alone(const EdgeSegment& segment) const {
+    return segment.start != segment.end && segment.has_triangle && !is_joined(segment);
+  }
+
+  void put_spans() {
+    const auto first = static_cast<std::uint32_t>(out_.points.size());
+    const auto point_of = [&](double s) {
+      return first +
+             static_cast<std::uint32_t>(std::ranges::lower_bound(places_, s, {}, &Interval::to) - places_.begin());
+    };
+    for (const EdgeSegment& segment : segments_)
+      if (segment.start != segment.end)
+        out_.spans.push_back({point_of(segment.from), point_of(segment.to), is_joined(segment)});
   }
 
   /// Inserts vertices at the places that lie strictly inside a segment.

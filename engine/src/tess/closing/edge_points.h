@@ -22,12 +22,14 @@ struct EdgePoint {
 struct EdgePoints {
   std::vector<EdgePoint> points;      ///< by edges and growing parameters
   std::vector<PatchVertex> vertices;  ///< of one point after the other
-  /// By edge: how many segments of boundaries lie on it that no other patch has triangles on without this, and how many
-  /// segments it gets beyond these, as it ends inside them.
-  struct Counts {
-    std::uint32_t own = 0, more = 0;
+  /// By edge: how many segments of boundaries lie on it that no other patch has triangles on without this.
+  std::vector<std::uint32_t> own;
+  /// The segments of all edges: each from one point to another.
+  struct Span {
+    std::uint32_t low, high;  ///< into `points`
+    bool is_joined;           ///< whether another patch has triangles on it anyway
   };
-  std::vector<Counts> counts;
+  std::vector<Span> spans;
   std::vector<EdgeSegment> gaps;  ///< lines that close gaps between curves, if no other patch has triangles on them
 };
 

@@ -52,7 +52,8 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
             .low = {run.patch, chord->start},
             .high = {run.patch, chord->end},
             .start = chord->start,
-            .end = chord->end},
+            .end = chord->end,
+            .has_triangle = chord->has_triangle},
            curve, chord->from, chord->to, segments);
   }
 }

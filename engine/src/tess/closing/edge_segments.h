@@ -39,6 +39,7 @@ struct EdgeSegment {
   double from = 0, to = 0;           ///< the edge's parameter at its ends
   PatchVertex low, high;             ///< at `from` and at `to`
   std::uint32_t start = 0, end = 0;  ///< the boundary's own vertices; equal: a point, which gets no more vertices
+  bool has_triangle = true;          ///< see CutPatch::LoopSegment
   /// Whether it has the first of these, so that each segment of a boundary begins once, however many runs end in it.
   bool begins() const { return low.vertex == start || high.vertex == start; }
 };

@@ -33,6 +33,8 @@ class CutCells {
 
   /// The grid vertices in use, as grid.vertex() counts them. Vertex k has the index `points` + k.
   std::span<const std::uint32_t> grid_vertices() const { return vertices_; }
+  /// Whether a point lies inside a chord, or two chords lie on each other.
+  bool has_divided_chords() const { return triangles_.has_divided_borders(); }
   /// The first of the points that are equal to one of those given.
   std::uint32_t first_equal(std::uint32_t point) const { return triangles_.first_equal(point); }
   std::span<const CellUse> uses() const { return uses_; }  ///< by cell

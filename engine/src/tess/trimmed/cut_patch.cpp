@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/impl_access.h"
+#include "tess/trimmed/divided_chords.h"
 #include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
@@ -93,7 +94,8 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
     for (const SidePoint& point : points)
       out.open_edges += above ? point.above && !point.below : point.below && !point.above;
   }
-  out.open_edges += static_cast<std::uint32_t>(cutter_.add_pieces(impl.pieces, impl.pieces_of(place)));
+  chords_ = static_cast<std::uint32_t>(cutter_.add_pieces(impl.pieces, impl.pieces_of(place)));
+  out.open_edges += chords_;
   return cutter_.cut();
 }
 
@@ -137,11 +139,18 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
   band_ = out.triangles.size();
   for (const CutPatch::Triangle& triangle : cells.band()) put(triangle[0], triangle[1], triangle[2]);
   if (!names_edges) return;
+  out.open_edges -= chords_;
+  if (cutter_.has_divided_chords()) {
+    out.loop_segments = divided_chords(cutter_, numbers_, out.triangles);
+    out.open_edges += static_cast<std::uint32_t>(out.loop_segments.size());
+    return;
+  }
   cutter_.for_loop_chords([&](const LoopChord& chord) {
     const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
     if (start != CutPatch::none && end != CutPatch::none)
       out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});
   });
+  out.open_edges += static_cast<std::uint32_t>(out.loop_segments.size());
 }
 
 CutPatch::Box CutPatch::box_of(const Triangle& triangle) const {
@@ -209,6 +218,20 @@ void CutPatchMaker::merge(const TrimmedPatch& limits, CutPatch& out) {
   band_ -= static_cast<std::size_t>(std::ranges::count_if(std::span(out.triangles).first(band_), is_point));
   std::erase_if(out.triangles, is_point);
   out.open_edges -= std::min(out.open_edges, lone - std::min(lone, count_lone_edges(band())));
+  mark_loop_segments(out);
+}
+
+void CutPatchMaker::mark_loop_segments(CutPatch& out) {
+  if (out.loop_segments.empty()) return;
+  const auto key = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  };
+  std::vector<std::uint64_t> edges;
+  for (const CutPatch::Triangle& t : out.triangles)
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back(key(t[k], t[(k + 1) % 3]));
+  std::ranges::sort(edges);
+  for (CutPatch::LoopSegment& segment : out.loop_segments)
+    segment.has_triangle = std::ranges::equal_range(edges, key(segment.start, segment.end)).size() == 1;
 }
 
 void CutPatchMaker::compact(std::span<const std::uint32_t> kept, CutPatch& out) {

@@ -30,6 +30,7 @@ struct CutPatch {
     std::uint32_t piece = 0;           ///< of the region
     std::uint32_t start = 0, end = 0;  ///< vertices; equal where rounding puts them in one place
     double from = 0, to = 0;           ///< parameters of the caller's curve
+    bool has_triangle = true;          ///< false where a sliver became a line, so that none is left beside it
   };
   /// A vertex on a side, at `along`, the surface's parameter along it.
   struct SideVertex {
@@ -125,6 +126,8 @@ class CutPatchMaker {
   void refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
   /// Merges vertices that rounding puts in one place, and leaves out the triangles between them.
   void merge(const TrimmedPatch& limits, CutPatch& out);
+  /// Finds the segments of loops that are edges of one triangle.
+  static void mark_loop_segments(CutPatch& out);
   /// Leaves out vertices that others replace. `kept`: by vertex, the one that stays.
   void compact(std::span<const std::uint32_t> kept, CutPatch& out);
   void measure(PatchSegments segments, const ChordBound& chord, CutPatch& out);
@@ -134,7 +137,8 @@ class CutPatchMaker {
   std::vector<std::uint32_t> numbers_;  ///< by vertex of the cutter
   std::vector<ParameterPoint> points_;  ///< by vertex of the patch, in the surface's parameters
   std::vector<double> lines_;
-  std::size_t band_ = 0;  ///< the first triangle of the band
+  std::size_t band_ = 0;      ///< the first triangle of the band
+  std::uint32_t chords_ = 0;  ///< along loops, as they were laid
   BandRefiner refiner_;
   VertexMerger merger_;
 };

@@ -9,6 +9,7 @@ void PolygonTriangles::begin(std::span<const ParameterPoint> points, std::size_t
   points_.sort(points);
   line_.clear();
   funnels_.clear();
+  has_divided_borders_ = false;
   funnels_.reserve(3 * points.size() + segments, 2 * points.size());
   edges_.clear();
   edges_.reserve(segments);
@@ -133,6 +134,7 @@ bool PolygonTriangles::find_ending(std::uint32_t rank, Ending& ending) {
 // The edge ends in the point, and starts there anew.
 void PolygonTriangles::divide(std::uint32_t place, std::uint32_t rank) {
   const std::uint32_t edge = line_.at(place).edge;
+  has_divided_borders_ |= (edges_[edge].kinds & border) != 0;
   edges_[edge].start = rank;
   edges_[edge].next_start = starting_[rank];
   starting_[rank] = edge;
@@ -161,6 +163,7 @@ void PolygonTriangles::overlap(std::size_t k, std::uint32_t edge) {
   if (edges_[nearer].end > edges_[farther].end) std::swap(nearer, farther);
   fan_[k] = nearer;
   Edge &one = edges_[nearer], &other = edges_[farther];
+  has_divided_borders_ |= (one.kinds & other.kinds & border) != 0 || (other.kinds & border && one.end != other.end);
   const std::uint8_t kinds = ((one.kinds ^ other.kinds) & border) | ((one.kinds | other.kinds) & cut);
   if (one.end == other.end) {
     forget_end(farther);

@@ -45,6 +45,8 @@ class PolygonTriangles {
 
   /// The triangles of the last run, by indices of its points.
   std::span<const Triangle> triangles() { return funnels_.triangles(); }
+  /// Whether a point of the last run lies inside a border segment, or two of these lie on each other.
+  bool has_divided_borders() const { return has_divided_borders_; }
   /// The point that stands for an equal one.
   std::uint32_t first_equal(std::uint32_t point) const { return points_.index_of(points_.rank_of(point)); }
 
@@ -80,6 +82,7 @@ class PolygonTriangles {
 
   SweepPoints points_;
   std::vector<Edge> edges_;
+  bool has_divided_borders_ = false;
   std::vector<std::uint32_t> starting_, ending_;  ///< by rank, the first edge of a list
   std::vector<std::uint32_t> fan_;                ///< the edges that start in a point, from below to above
   SweepLine line_;

@@ -114,7 +114,7 @@ double PatchCutter::add_chords(std::span<const TrimPiece> chain, std::uint32_t f
 bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_, marks_) && cut(); }
 
 double PatchCutter::parameter(const LoopChord& chord, std::uint32_t point) const {
-  const ParameterPoint &a = points_[chord.start], &b = points_[chord.end], &at = points_[point];
+  const ParameterPoint a = points_[chord.start], b = points_[chord.end], at = this->point(point);
   if (point == chord.start || at == a) return chord.from;
   if (point == chord.end || at == b) return chord.to;
   const ParameterPoint all = distance(a, b), part = distance(a, at);

@@ -87,6 +87,9 @@ class PatchCutter {
                       parameter(whole, end)});
     }
   }
+  /// Returns the parameter of the caller's curve at a point on a chord.
+  double parameter(const LoopChord& chord, std::uint32_t point) const;
+  bool has_divided_chords() const { return cells_.has_divided_chords(); }
   /// The parameters of a vertex, in the surface and in the patch.
   ParameterPoint point(std::uint32_t vertex) const;
   ParameterPoint local(std::uint32_t vertex) const;
@@ -97,8 +100,6 @@ class PatchCutter {
   double sliver_bound() const { return sliver_; }
 
  private:
-  /// The parameter of a point on a chord.
-  double parameter(const LoopChord& chord, std::uint32_t point) const;
   std::uint32_t add_point(const ParameterPoint& point);
   /// Adds the points of a chain but its start, and their parameters. `first`: its first piece. Returns the sliver.
   double add_chords(std::span<const TrimPiece> chain, std::uint32_t first);
