@@ -105,6 +105,7 @@ Status report(const Job& job, const TessellateOptions& options, const CommonOpti
     object["open_edges"] = made.open_edges;
     object["cut_patches"] = made.cut_patches;
     object["crossed_surfaces"] = made.crossed.size();
+    object["rough_surfaces"] = made.rough.size();
   }
   add_model_facts(object, loaded, made.patches, made.fit_error);
   add_seconds(object, common, timings);
@@ -151,6 +152,18 @@ Status run_in_pieces(const Job& job, const TessellateOptions& options, const Com
   return print_report(job.output, object.text() + "\n");
 }
 
+/// Names the surfaces whose meshes are not what was wanted.
+void warn_of_surfaces(const Loaded& loaded, const Meshed& made) {
+  const auto say = [&](std::size_t surface, const std::string& what) {
+    warn(loaded.in_surface(surface, {StatusCode::unsupported, what}).message());
+  };
+  for (const std::size_t surface : made.crossed)
+    say(surface, "its trimming loops cannot be made a polygon: parts of it are left out");
+  for (const RoughSurface& rough : made.rough)
+    say(rough.surface, "its trimming loops are too rough for the tolerance: its mesh is proven to lie within " +
+                           readable(rough.bound, 3));
+}
+
 Status run_tessellate(const Job& job, const TessellateOptions& options, const CommonOptions& common, Timings& timings) {
   if (options.piece_bytes > 0) return run_in_pieces(job, options, common, timings);
   Result<OutputFile> out = open_output(job.output);
@@ -160,11 +173,7 @@ Status run_tessellate(const Job& job, const TessellateOptions& options, const Co
   const std::string path = format_path(job.output, options.format);
   const Result<Meshed> made = make_meshes(options, *loaded, is_flat(path), timings);
   if (!made) return made.status();
-  for (const std::size_t surface : made->crossed)
-    warn(loaded
-             ->in_surface(surface, {StatusCode::unsupported,
-                                    "its trimming loops cannot be made a polygon: parts of it are left out"})
-             .message());
+  warn_of_surfaces(*loaded, *made);
   {
     const auto phase = timings.phase("write");
     Status status = made->by_shapes ? write_assembly(made->assembly, path, *out) : write_mesh(made->mesh, path, *out);

@@ -62,7 +62,6 @@ void add_plan(const Tessellation& plan, const SetUse& use, Meshed& made) {
   made.fit_error.distance = std::max(made.fit_error.distance, use.stretch * use.set.fit_error().distance);
   made.fit_error.certified &= use.set.fit_error().certified;
   made.welded_borders += use.count * plan.welded_borders();
-  made.open_edges += use.count * plan.open_edges();
   made.angle = std::max(made.angle, plan.angle() / degree);
   made.patches_without_angle += use.count * plan.patches_without_angle();
   made.pixels = std::max(made.pixels, plan.pixels());
@@ -73,6 +72,25 @@ void add_plan(const Tessellation& plan, const SetUse& use, Meshed& made) {
     const std::size_t surface = use.first_surface + use.set.source(patch).surface;
     if (made.crossed.empty() || made.crossed.back() != surface) made.crossed.push_back(surface);
   }
+  for (const std::uint32_t patch : plan.patches_beyond_tolerance()) {
+    const std::size_t surface = use.first_surface + use.set.source(patch).surface;
+    if (made.rough.empty() || made.rough.back().surface != surface) made.rough.push_back({surface, 0});
+    double& bound = made.rough.back().bound;
+    bound = std::max(bound, use.stretch * static_cast<double>(plan.bounds()[patch]));
+  }
+}
+
+/// Adds the open edges of a mesh. They are counted where loops cut patches or faces share edges, because the plan's own
+/// number takes for granted that loops do not run over each other.
+Status add_open_edges(const Tessellation& plan, const SetUse& use, const Mesh& mesh, Meshed& made) {
+  std::size_t open = plan.open_edges();
+  if (use.set.cut_count() > 0 || !plan.edge_gaps().empty()) {
+    const Result<MeshReport> report = check(mesh);
+    if (!report) return report.status();
+    open = report->open_edges;
+  }
+  made.open_edges += use.count * open;
+  return {};
 }
 
 /// A shape's set and its instances.
@@ -162,6 +180,7 @@ class ShapeMesher {
     if (const Status status = check_size(plan->capacity(), shape.count); !status.ok()) return status;
     Result<Mesh> mesh = run_plan(*plan, *shape.set);
     if (!mesh) return mesh.status();
+    if (Status status = add_open_edges(*plan, use, *mesh, made_); !status.ok()) return status;
     Result<std::vector<MeshPart>> parts = parts_by_face(*mesh, *shape.set, model.shapes[k]);
     if (!parts) return parts.status();
     mesh->parts = *std::move(parts);
@@ -245,6 +264,9 @@ Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loade
   if (const Status status = check_memory(made.size, options); !status.ok()) return in_file(loaded.files[0], status);
   Result<Mesh> mesh = run_plan(*plan, *set);
   if (!mesh) return in_file(loaded.files[0], mesh.status());
+  if (!options.grid)
+    if (const Status status = add_open_edges(*plan, use, *mesh, made); !status.ok())
+      return in_file(loaded.files[0], status);
   Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, *set, loaded.model);
   if (!parts) return in_file(loaded.files[0], parts.status());
   made.mesh = *std::move(mesh);

@@ -11,6 +11,12 @@
 
 namespace tessera::cli {
 
+/// A surface whose trimming loops are too rough for the tolerances.
+struct RoughSurface {
+  std::size_t surface;
+  double bound;  ///< the largest distance of its mesh
+};
+
 /// The meshes of a job, and what is known of them. Counts are those of all instances.
 struct Meshed {
   Mesh mesh = {};               ///< of all surfaces as one set, unless `by_shapes`
@@ -23,7 +29,8 @@ struct Meshed {
   double tolerance = 0;         ///< infinite: none
   std::size_t welded_borders = 0, open_edges = 0;
   std::vector<std::size_t> crossed = {};  ///< surfaces with loops that cannot be made polygons
-  double angle = 0;                       ///< degrees
+  std::vector<RoughSurface> rough = {};
+  double angle = 0;  ///< degrees
   std::size_t patches_without_angle = 0;
   double pixels = 0;
   double bound = 0;    ///< largest distance of mesh and surfaces; 0: unknown

@@ -107,8 +107,8 @@ struct TessellationOptions {
   /// The largest number of triangles; a mesh that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
   /// Finds the tolerance: the smallest of the lengths 2^(k/128), 0.54 percent apart, for which max_triangles suffice,
-  /// down to 1e-6 of the tolerance that one cell per patch keeps. Angle and pixels are kept as well. Edits keep the
-  /// tolerance as long as max_triangles suffice.
+  /// down to 1e-6 of the tolerance that one cell per patch keeps, without patches_beyond_tolerance(). Angle and pixels
+  /// are kept as well. Edits keep the tolerance as long as max_triangles suffice.
   bool smallest = false;
   /// Looks for fewer triangles that keep a distance, and takes more time. It never adds triangles and saves a twentieth
   /// to a third of them, most on rational patches and on those that bend along u in one place and along v in another.
@@ -220,6 +220,7 @@ struct MeshChange {
 /// Trimming loops: of a patch that they cut, the mesh shows what an odd number of them encloses.
 ///
 /// - All bounds hold between the mesh and the kept part, in both directions; those of pixels and angles too.
+/// - A cut patch whose loops are too rough for the tolerances keeps larger bounds; see patches_beyond_tolerance().
 /// - With an angle, the edges along loops also turn by about that angle from one to the next; this is not proven.
 /// - Patches of one face share the vertices of their common sides; whole patches are as without loops.
 /// - Cut patches take positions from the set's double control points. They are not for uniform rates.
@@ -275,15 +276,16 @@ class Tessellation {
   Tessellation& operator=(Tessellation&&) noexcept;
   ~Tessellation();
 
-  /// Returns the distance that the mesh is proven to keep: the largest of bounds(), at most the tolerance; infinite
-  /// with rates. Like all bounds of a plan it holds for the set and the revision that the plan was made or updated for.
+  /// Returns the distance that the mesh is proven to keep: the largest of bounds() that is finite; infinite with rates.
+  /// It is at most the tolerance, unless there are patches_beyond_tolerance(). Like all bounds of a plan it holds for the
+  /// set and the revision that the plan was made or updated for.
   double bound() const;
   /// Whether the bounds are proven; false with rates, and where the set's fit error is only sampled.
   bool certified() const;
   /// Returns the distance that the plan keeps: the tolerance, as a length, or the smallest one that make() found.
   /// Infinite if neither was set.
   double tolerance() const;
-  /// Returns the proven distance of each patch; empty with rates.
+  /// Returns the proven distance of each patch, infinite for crossed_patches(); empty with rates.
   std::span<const float> bounds() const;
   /// Returns the proven angle, radians: the largest of the patches that have a bound. 0 if no angle was set.
   double angle() const;
@@ -310,6 +312,10 @@ class Tessellation {
   std::size_t open_edges() const;
   /// Returns the patches that have no triangles, because their trimming loops could not be made a polygon.
   std::span<const std::uint32_t> crossed_patches() const;
+  /// Returns the cut patches whose bounds exceed the tolerances, by growing patch: their loops are too rough, for
+  /// example because the curves of a loop leave gaps. They are meshed as finely as helps. bounds(), angles() and
+  /// pixel_bounds() state what they keep, and so does bound().
+  std::span<const std::uint32_t> patches_beyond_tolerance() const;
   MeshCapacity capacity() const;  ///< the exact sizes of the mesh
   /// Returns where a patch's vertices, triangles and quads begin, or all end. Requires share_vertices to be false.
   MeshCapacity before(std::size_t patch) const;

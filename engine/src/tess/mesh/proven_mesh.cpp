@@ -146,6 +146,7 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .welded_borders = welded_borders_,
           .open_edges = plan_.open_edges(),
           .crossed = plan_.crossed(),
+          .beyond = plan_.beyond(),
           .gap = plan_.closed() ? plan_.closed()->gap : 0,
           .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>()};
 }

@@ -12,9 +12,11 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
+/// The largest value that is finite.
 double largest(std::span<const float> values) {
   float most = 0;
-  for (const float value : values) most = std::max(most, value);
+  for (const float value : values)
+    if (!std::isinf(value)) most = std::max(most, value);
   return double(most);
 }
 
@@ -46,12 +48,7 @@ bool Tessellation::certified() const { return impl_->proof().certified; }
 double Tessellation::tolerance() const { return impl_->proof().tolerance; }
 std::span<const float> Tessellation::bounds() const { return impl_->proof().bounds; }
 
-double Tessellation::angle() const {
-  float most = 0;
-  for (const float angle : impl_->proof().angles)
-    if (!std::isinf(angle)) most = std::max(most, angle);
-  return double(most);
-}
+double Tessellation::angle() const { return largest(impl_->proof().angles); }
 std::size_t Tessellation::patches_without_angle() const {
   return static_cast<std::size_t>(
       std::ranges::count_if(impl_->proof().angles, [](float angle) { return std::isinf(angle); }));
@@ -64,6 +61,7 @@ std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof(
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }
 std::size_t Tessellation::open_edges() const { return impl_->proof().open_edges; }
 std::span<const std::uint32_t> Tessellation::crossed_patches() const { return impl_->proof().crossed; }
+std::span<const std::uint32_t> Tessellation::patches_beyond_tolerance() const { return impl_->proof().beyond; }
 MeshCapacity Tessellation::capacity() const { return impl_->capacity(); }
 MeshCapacity Tessellation::before(std::size_t patch) const { return impl_->before(patch); }
 

@@ -18,7 +18,7 @@ class Tessellation::Impl {
     bool certified = false;
     std::span<const float> bounds = {}, angles = {}, pixels = {};
     std::size_t welded_borders = 0, open_edges = 0;
-    std::span<const std::uint32_t> crossed = {};
+    std::span<const std::uint32_t> crossed = {}, beyond = {};
     double gap = 0;
     std::span<const float> edge_gaps = {};
   };

@@ -20,6 +20,7 @@
 #include "tess/closing/edge_stops.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
+#include "tess/plan/cut_shares.h"
 #include "tess/trimmed/cut_patch.h"
 #include "tessera/tessellation.h"
 
@@ -48,6 +49,8 @@ class CertifiedPlan {
   std::span<const CutPatch> cuts() const { return rare_ ? rare_->cuts : std::span<const CutPatch>(); }
   /// Cut patches without triangles, because their chords cross.
   std::span<const std::uint32_t> crossed() const { return rare_ ? rare_->crossed : std::span<const std::uint32_t>(); }
+  /// Cut patches whose bounds exceed the limits, by growing patch.
+  std::span<const std::uint32_t> beyond() const { return rare_ ? rare_->beyond : std::span<const std::uint32_t>(); }
   /// The vertices that faces share along edges; null if the set has no edges.
   const ClosedEdges* closed() const { return rare_ && rare_->closed ? &*rare_->closed : nullptr; }
   /// Whether another plan has the same triangles, by the numbers of their vertices.
@@ -113,7 +116,7 @@ class CertifiedPlan {
     std::vector<std::uint8_t> f64_patches;
     std::shared_ptr<const PatchTrims> trims;  ///< those of the set
     std::vector<CutPatch> cuts;
-    std::vector<std::uint32_t> crossed;
+    std::vector<std::uint32_t> crossed, beyond;
     std::optional<ClosedEdges> closed;
   };
   std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, and no vertices come from doubles
@@ -281,10 +284,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Returns the rooms of all cut patches, as patches are divided now. Errors: cancelled.
   Result<std::vector<CutRoom>> find_rooms(const Request& request, const CertifiedPlan& plan, const Execution& execution)
       const;
-  /// Chooses the segments of the cut patches whose bounds exceed the limits: `excess` above 1. They may take `shares`
-  /// of the room.
-  Status choose_cut(const Request& request, std::span<const double> shares, std::span<const double> excess,
-                    CertifiedPlan& plan) const;
+  /// Chooses the segments of the cut patches that are to be cut anew, for their shares of the room.
+  void choose_cut(const Request& request, CutShares& shares, CertifiedPlan& plan) const;
   /// The facts that all patches of one pass are cut by. `is_shared`: by edge, whether two borders or more have it.
   struct CutPass {
     std::span<const CutRoom> rooms;  ///< by cut patch
@@ -294,14 +295,15 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::vector<std::uint8_t> shared_edges() const;
   /// Cuts a patch, place `c` among the cuts, and sets its bounds. Returns the largest over its limit.
   double cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker, CertifiedPlan& plan) const;
-  /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds. If edges are
-  /// closed, sets `stops` to those that patches are cut by.
+  /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds or no attempt
+  /// helps. If edges are closed, sets `stops` to those that patches are cut by. Errors: invalid_argument (more triangles
+  /// than the limit), cancelled.
   Status divide_and_cut(const Request& request, CertifiedPlan& plan, std::optional<EdgeStops>& stops,
                         const Execution& execution) const;
   /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.
   double bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const;
-  /// The error of a tolerance that loops cannot keep.
-  Status too_rough(const Request& request, std::size_t patch) const;
+  /// Refuses cut patches that have more triangles than the limit.
+  Status check_triangles(const Request& request, const CertifiedPlan& plan) const;
   /// Finds the borders of whole patches along the sides of cut ones.
   void find_same_borders(CertifiedPlan & plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along

@@ -38,14 +38,13 @@ double CertifiedPlanner::same_share(const Request& request) const {
 }
 
 // Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then these
-// patches are cut anew for less.
+// patches are cut anew for less. In the last attempt they keep the bounds that they have.
 Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   constexpr int max_attempts = 6;
   std::vector<double> shares(set_->trims ? set_->trims->cuts.size() : 0, 1);
   Request cut = request;
   cut.cut_shares = shares;
   std::optional<EdgeStops> stops;
-  std::size_t worst = 0;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (set_->trims)
       if (Status status = divide_and_cut(cut, plan, stops, execution); !status.ok()) return status;
@@ -56,22 +55,22 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
         execution.cancel);
     if (!made) return made.status();
     const ClosedEdges& closed = plan.rare_->closed.emplace(*std::move(made));
-    bool keeps = true;
+    plan.open_edges_ =
+        static_cast<std::uint32_t>(std::max(std::int64_t{0}, std::int64_t{plan.open_edges_} - closed.closed_segments));
+    std::vector<std::uint32_t>& beyond = plan.rare_->beyond;
+    const std::size_t known = beyond.size();
     for (const std::uint32_t c : closed.edited_cuts) {
       CutPatch& edited = plan.rare_->cuts[c];
       const double excess = bound_cut(room_of(edited, 1, request, plan), edited, plan);
-      if (excess <= 1) continue;
-      keeps = false;
-      worst = edited.patch;
+      if (excess <= 1 || std::binary_search(beyond.begin(), beyond.begin() + std::ptrdiff_t(known), edited.patch))
+        continue;
+      beyond.push_back(edited.patch);
       shares[c] *= 0.95 / excess;
     }
-    if (keeps) {
-      plan.open_edges_ = static_cast<std::uint32_t>(
-          std::max(std::int64_t{0}, std::int64_t{plan.open_edges_} - closed.closed_segments));
-      return {};
-    }
+    if (beyond.size() == known) break;
+    std::ranges::sort(beyond);
   }
-  return too_rough(request, worst);
+  return {};
 }
 
 void CertifiedPlanner::find_edges_in_step() {

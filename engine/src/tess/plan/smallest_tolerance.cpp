@@ -52,7 +52,7 @@ Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles,
   const auto fit = [&](int step) -> Result<Fit> {
     const Result<CertifiedPlan> plan = leaner_plan({tolerance_of(step), options_.fewest}, execution);
     if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
-    if (!plan) return Fit{};
+    if (!plan || !plan->beyond().empty()) return Fit{};
     const MeshCapacity size = plan->capacity();
     return Fit{size.triangles <= max_triangles && size.vertices <= max_vertices,
                least_triangles(*plan) <= max_triangles};

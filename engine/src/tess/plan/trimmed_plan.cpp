@@ -28,7 +28,7 @@ namespace {
 // Triangles of the band may be wider than a cell, so cells take a part of the room. Larger ones are halved.
 constexpr double cell_share = 0.6, sliver_share = 0.25;
 constexpr double band_share = 1.5;  // a bound of most triangles of the band over that of cells
-constexpr int max_attempts = 16;
+constexpr int max_attempts = 24;
 constexpr std::size_t cuts_per_task = 4, rooms_per_task = 64;
 
 }  // namespace
@@ -97,7 +97,7 @@ double CertifiedPlanner::bound_cut(const CutRoom& room, const CutPatch& cut, Cer
   const std::size_t k = cut.patch;
   const double bound = cut.distance + cut.sliver + room.given;
   double excess = std::isfinite(room.tolerance) ? bound / room.tolerance : 0;
-  plan.bounds_[k] = rounded_up(bound);
+  plan.bounds_[k] = cut.is_crossed ? std::numeric_limits<float>::infinity() : rounded_up(bound);
   if (options_.angle && !shapes_[k].is_curve) {
     const TurningBound turning = turning_of(k);
     const double angle = turning.is_finite() ? turning.angle(cut.widest) : std::numeric_limits<double>::infinity();
@@ -133,20 +133,20 @@ void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
   }
 }
 
-Status CertifiedPlanner::choose_cut(const Request& request, std::span<const double> shares,
-                                    std::span<const double> excess, CertifiedPlan& plan) const {
+void CertifiedPlanner::choose_cut(const Request& request, CutShares& shares, CertifiedPlan& plan) const {
   Request own = request;
   own.uniform = true;  // triangles of the band may be as wide as the widest cell
   own.fewest = false;
-  for (std::size_t c = 0; c < shares.size(); ++c) {
-    if (excess[c] <= 1) continue;
+  for (std::size_t c = 0; c < plan.cuts().size(); ++c) {
+    if (!shares.is_due(c)) continue;
     const std::size_t patch = plan.cuts()[c].patch;
-    own.share = shares[c];
+    own.share = shares.share(c);
     const Choice choice = choose(patch, own, max_rate);
-    if (choice.failure != Failure::none) return refusal(choice.failure, patch, request);
-    plan.segments_[patch] = choice.segments;
+    if (choice.failure == Failure::none)
+      plan.segments_[patch] = choice.segments;
+    else
+      shares.settle(c);
   }
-  return {};
 }
 
 std::vector<std::uint8_t> CertifiedPlanner::shared_edges() const {
@@ -179,14 +179,14 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
   plan.rare_->trims = set_->trims;
   plan.rare_->cuts.resize(cuts.size());
-  plan.rare_->crossed.clear();
+  plan.rare_->crossed.clear(), plan.rare_->beyond.clear();
   for (std::size_t c = 0; c < cuts.size(); ++c) plan.rare_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
   const std::vector<std::uint8_t> is_shared = shared_edges();
-  std::vector<double> shares(cuts.size(), cell_share), excess(cuts.size(), 2);
-  for (std::size_t c = 0; c < request.cut_shares.size(); ++c) shares[c] *= request.cut_shares[c];
-  for (int attempt = 0; attempt < max_attempts; ++attempt) {
-    if (Status status = choose_cut(request, shares, excess, plan); !status.ok()) return status;
+  CutShares shares(cuts.size(), cell_share, request.cut_shares);
+  std::vector<double> excess(cuts.size(), 0);
+  for (int attempt = 0; attempt < max_attempts && shares.is_any_due(); ++attempt) {
+    choose_cut(request, shares, plan);
     const std::vector<Division> before = std::exchange(plan.divisions_, {});
     divide(request.tolerance, plan);
     const Result<std::vector<CutRoom>> rooms = find_rooms(request, plan, execution);
@@ -197,33 +197,33 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
       for (std::size_t c = begin; c < end; ++c)
-        if (excess[c] > 1 || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
+        if (shares.is_due(c) || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
           excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared}, maker, plan);
     };
     const Execution quiet{.cancel = execution.cancel};
     if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
-    bool keeps = true;
     for (std::size_t c = 0; c < cuts.size(); ++c) {
-      if (excess[c] <= 1) continue;
-      if (!(plan.rare_->cuts[c].sliver < request.tolerance)) return too_rough(request, cuts[c].patch);
-      keeps = false;
-      shares[c] *= 0.85 / excess[c];
+      if (!(plan.cuts()[c].sliver < request.tolerance))
+        shares.settle(c);  // smaller cells leave the slivers as they are
+      shares.take(c, excess[c]);
     }
-    if (!keeps) continue;
-    plan.count_open_edges_beside_loops(edges_);
-    for (const CutPatch& cut : plan.cuts())
-      if (cut.is_crossed) plan.rare_->crossed.push_back(cut.patch);
-    return {};
+    if (Status status = check_triangles(request, plan); !status.ok()) return status;
   }
-  const auto worst = static_cast<std::size_t>(std::ranges::max_element(excess) - excess.begin());
-  return too_rough(request, cuts[worst].patch);
+  plan.count_open_edges_beside_loops(edges_);
+  for (std::size_t c = 0; c < cuts.size(); ++c) {
+    if (plan.cuts()[c].is_crossed) plan.rare_->crossed.push_back(cuts[c].patch);
+    if (shares.is_beyond(c)) plan.rare_->beyond.push_back(cuts[c].patch);
+  }
+  return {};
 }
 
-Status CertifiedPlanner::too_rough(const Request& request, std::size_t patch) const {
-  return {StatusCode::invalid_argument,
-          wanted(request.tolerance) + " is too small beside the rounding of the trimming loops of patch " +
-              std::to_string(patch),
-          static_cast<std::ptrdiff_t>(patch)};
+// Later attempts have more triangles.
+Status CertifiedPlanner::check_triangles(const Request& request, const CertifiedPlan& plan) const {
+  std::uint64_t triangles = 0;
+  for (const CutPatch& cut : plan.cuts()) triangles += cut.triangles.size();
+  if (triangles <= request.max_triangles) return {};
+  return {StatusCode::invalid_argument, wanted(request.tolerance) + " takes more than " + std::to_string(triangles) +
+                                            " triangles, the limit is " + std::to_string(request.max_triangles)};
 }
 
 }  // namespace tessera::inline abi_0_1
