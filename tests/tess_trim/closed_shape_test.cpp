@@ -212,7 +212,7 @@ TEST(ClosedShape, WrongCoedgesMakeGapsAndNoHoles) {
     EXPECT_LE(plan->bound(), 0.01) << round;
     EXPECT_LT(plan->gap(), 6) << round;
     if (round % 3 < 2) {
-      EXPECT_EQ(plan->open_edges(), 0u) << round;
+      EXPECT_EQ(plan->open_edges(), 0u) << round << ": " << report.open_edges;
     }
   }
 }
