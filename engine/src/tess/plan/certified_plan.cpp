@@ -377,8 +377,10 @@ Result<CertifiedPlan> CertifiedPlanner::leaner_plan(const Request& request, cons
   Result<CertifiedPlan> best = plan(request, execution);
   if (!best || !request.fewest || !request.kept.segments.empty()) return best;
   // Segments are chosen by an estimate of their neighbours' costs: rarely, the plain ones have fewer triangles.
-  Result<CertifiedPlan> plain = plan({request.tolerance}, {.cancel = execution.cancel});
-  if (!plain || plain->capacity().triangles < best->capacity().triangles) return plain;
+  const Request of_plain{.tolerance = request.tolerance, .max_triangles = request.max_triangles};
+  Result<CertifiedPlan> plain = plan(of_plain, {.cancel = execution.cancel});
+  if (!plain) return plain.status().code() == StatusCode::cancelled ? std::move(plain) : std::move(best);
+  if (plain->capacity().triangles < best->capacity().triangles) return plain;
   return best;
 }
 

@@ -209,15 +209,17 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     double tolerance;     ///< the distance, infinite if there is no limit
     bool fewest = false;  ///< see TessellationOptions::fewest
     KeptSegments kept = {};
-    std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();  ///< for tolerances that messages propose
+    /// A limit on the triangles of each cut patch, and for tolerances that messages propose.
+    std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
     double share = 1;      ///< the part of what the limits leave that cells may take
     bool uniform = false;  ///< whether segments are of one length
     /// By cut patch: the part of the tolerance that it may take before edges are closed; empty: all of it.
     std::span<const double> cut_shares = {};
   };
-  /// Makes a plan without a limit on its triangles.
+  /// Makes a plan without a limit on its triangles in all.
   Result<CertifiedPlan> plan(const Request& request, const Execution& execution) const;
-  /// Makes the plan with the fewer triangles, by fewest segments or by plain ones, without a limit on its triangles.
+  /// Makes the plan with the fewer triangles, by fewest segments or by plain ones, without a limit on its triangles
+  /// in all.
   Result<CertifiedPlan> leaner_plan(const Request& request, const Execution& execution) const;
   /// Finds edges, shapes, bounds and roundings.
   Status find_edges_and_bounds(const Execution& execution);
@@ -291,6 +293,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     std::span<const CutRoom> rooms;  ///< by cut patch
     const EdgeStops* stops;          ///< null if no edges are closed
     std::span<const std::uint8_t> is_shared;
+    const std::atomic<bool>* cancel;
   };
   std::vector<std::uint8_t> shared_edges() const;
   /// Cuts a patch, place `c` among the cuts, and sets its bounds. Returns the largest over its limit.
@@ -304,6 +307,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const;
   /// Refuses cut patches that have more triangles than the limit.
   Status check_triangles(const Request& request, const CertifiedPlan& plan) const;
+  /// The error of a tolerance for which a cut patch takes more triangles than the limit.
+  Status too_many(const Request& request, std::size_t patch) const;
   /// Finds the borders of whole patches along the sides of cut ones.
   void find_same_borders(CertifiedPlan & plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "tess/plan/certified_plan.h"
@@ -49,8 +50,11 @@ Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles,
   if (set_->trims) high = std::max(high, set_->model_box().diagonal());  // loops need segments of their own
   if (Result<CertifiedPlan> plan = this->plan(high, max_triangles, execution); !plan) return plan.status();
 
+  // A cut patch with more than twice the triangles may not fit below either: see least_triangles().
+  const std::uint64_t max_of_patch = 2 * std::min(max_triangles, std::numeric_limits<std::uint64_t>::max() / 2);
   const auto fit = [&](int step) -> Result<Fit> {
-    const Result<CertifiedPlan> plan = leaner_plan({tolerance_of(step), options_.fewest}, execution);
+    const Request request{.tolerance = tolerance_of(step), .fewest = options_.fewest, .max_triangles = max_of_patch};
+    const Result<CertifiedPlan> plan = leaner_plan(request, execution);
     if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
     if (!plan || !plan->beyond().empty()) return Fit{};
     const MeshCapacity size = plan->capacity();

@@ -18,6 +18,7 @@
 #include <string>
 #include <utility>
 
+#include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "tess/edges/side_curve.h"
 #include "tess/plan/certified_plan.h"
@@ -76,6 +77,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, double 
   room.limits.in_cells = options_.angle || options_.camera;
   room.limits.rounding = {&set_->patches[patch], set_->origin, options_.f64_positions, roundings_[patch]};
   room.limits.domain = set_->sources[patch].domain;
+  room.limits.max_triangles = request.max_triangles;
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
 }
@@ -165,6 +167,7 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
     const std::uint32_t edge = edges_.edge(cut.patch, side);
     room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && pass.is_shared[edge];
   }
+  room.limits.cancel = pass.cancel;
   std::optional<PatchStops> demands;
   if (pass.stops && cut_faces_[c] != no_id) room.limits.edges = &demands.emplace(*pass.stops, cut.patch, cut_faces_[c]);
   maker.make(set_->trims->regions[cut.region], face_sides_[cut.region], cut, room.limits,
@@ -194,14 +197,18 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     if (runs_)
       if (Status status = find_stops(*rooms, plan, stops.emplace(*runs_, same_share(request)), execution); !status.ok())
         return status;
+    LeastIndex full;
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
-      for (std::size_t c = begin; c < end; ++c)
-        if (shares.is_due(c) || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
-          excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared}, maker, plan);
+      for (std::size_t c = begin; c < end; ++c) {
+        if (!shares.is_due(c) && before[cuts[c].patch] == plan.divisions_[cuts[c].patch]) continue;
+        excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared, execution.cancel}, maker, plan);
+        if (plan.rare_->cuts[c].has_too_many) full.add(c);
+      }
     };
     const Execution quiet{.cancel = execution.cancel};
     if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
+    if (full.found()) return too_many(request, cuts[full.index()].patch);
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       if (!(plan.cuts()[c].sliver < request.tolerance))
         shares.settle(c);  // smaller cells leave the slivers as they are
@@ -215,6 +222,13 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     if (shares.is_beyond(c)) plan.rare_->beyond.push_back(cuts[c].patch);
   }
   return {};
+}
+
+Status CertifiedPlanner::too_many(const Request& request, std::size_t patch) const {
+  return {StatusCode::invalid_argument,
+          wanted(request.tolerance) + " takes more triangles for patch " + std::to_string(patch) +
+              " alone than the limit of " + std::to_string(request.max_triangles),
+          static_cast<std::ptrdiff_t>(patch)};
 }
 
 // Later attempts have more triangles.

@@ -1,68 +1,80 @@
 #include "tess/trimmed/band_refiner.h"
 
-#include <utility>
-
 namespace tessera::inline abi_0_1 {
 
-void BandRefiner::add_edge(std::uint32_t a, std::uint32_t b, std::uint32_t triangle) {
-  const auto [at, is_new] = edges_.try_emplace(key(a, b), std::array{triangle, none});
-  if (!is_new) at->second[1] = triangle;
-}
-
-void BandRefiner::move_edge(std::uint32_t a, std::uint32_t b, std::uint32_t from, std::uint32_t to) {
-  for (std::uint32_t& triangle : edges_.at(key(a, b)))
-    if (triangle == from) triangle = to;
-}
-
-std::uint32_t BandRefiner::divide(std::vector<Triangle>& triangles, std::uint32_t triangle, std::uint32_t a,
-                                  std::uint32_t b, std::uint32_t m) {
-  const auto added = static_cast<std::uint32_t>(triangles.size());
-  const Triangle whole = triangles[triangle];
-  Triangle low = whole, high = whole;
-  std::uint32_t apex = none;
-  for (std::size_t c = 0; c < 3; ++c) {
-    if (whole[c] == b) low[c] = m;
-    if (whole[c] == a) high[c] = m;
-    if (whole[c] != a && whole[c] != b) apex = whole[c];
+BandRefiner::LongestEdge BandRefiner::longest_edge(std::uint32_t triangle, const Demands& demands) const {
+  LongestEdge longest{{triangle, 0}, -1};
+  for (std::uint32_t corner = 0; corner < 3; ++corner) {
+    const BandMesh::Edge edge{triangle, corner};
+    const double length = demands.length(mesh_.start(edge), mesh_.finish(edge));
+    if (length > longest.length) longest = {edge, length};
   }
-  triangles[triangle] = low;
-  triangles.push_back(high);
-  move_edge(b, apex, triangle, added);
-  add_edge(a, m, triangle), add_edge(m, b, added);
-  edges_[key(m, apex)] = {triangle, added};
-  return added;
+  return longest;
 }
 
-void BandRefiner::run(std::vector<ParameterPoint>& vertices, std::vector<Triangle>& triangles, std::size_t first,
-                      FunctionRef<bool(const Triangle&)> is_large,
-                      FunctionRef<double(std::uint32_t, std::uint32_t)> length) {
+// Goes from triangle to triangle across longest edges, which grow, up to one that is the longest of both its triangles.
+BandMesh::Edge BandRefiner::find_edge(std::uint32_t triangle, const Demands& demands) const {
+  const LongestEdge own = longest_edge(triangle, demands);
+  for (LongestEdge longest = own; longest.length > 0;) {
+    const BandMesh::Edge other = mesh_.across(longest.edge);
+    if (!other.exists()) break;
+    const LongestEdge next = longest_edge(other.triangle, demands);
+    if (!(next.length > longest.length)) return longest.edge;
+    longest = next;
+  }
+  const BandMesh::Edge other = own.length > 0 ? mesh_.across(own.edge) : BandMesh::Edge{};
+  const bool may_be_divided = other.exists() && odd_divisions_[other.triangle - mesh_.begin()] < max_odd_divisions;
+  return may_be_divided ? own.edge : BandMesh::Edge{};
+}
+
+void BandRefiner::divide(BandMesh::Edge edge, std::vector<ParameterPoint>& vertices, const Demands& demands) {
+  const BandMesh::Edge other = mesh_.across(edge);
+  const std::uint32_t a = mesh_.start(edge), b = mesh_.finish(edge), added = mesh_.end();
+  const double length = demands.length(a, b);
+  const auto odd_divisions = [&](std::uint32_t triangle) {
+    const bool is_odd = longest_edge(triangle, demands).length > length;
+    return static_cast<std::uint8_t>(odd_divisions_[triangle - mesh_.begin()] + is_odd);
+  };
+  for (const std::uint32_t triangle : {edge.triangle, other.triangle}) {
+    odd_divisions_[triangle - mesh_.begin()] = odd_divisions(triangle);
+    odd_divisions_.push_back(odd_divisions_[triangle - mesh_.begin()]);
+  }
+  const auto middle = static_cast<std::uint32_t>(vertices.size());
+  vertices.push_back(demands.middle(a, b, mesh_.apex(edge), mesh_.apex(other)));
+  mesh_.divide(edge, middle);
+  for (const std::uint32_t triangle : {edge.triangle, added, other.triangle, added + 1}) large_.push_back(triangle);
+}
+
+// Proof that it ends. If it did not, some triangle would have an endless row of descendants, each a half of the one
+// before (König's lemma: each division makes two). They lie in each other, so they shrink to a segment, or a point. Of
+// the edges that are divided, all but a few are the longest of these triangles, and at least as long as the longest
+// edge of a large triangle: so they don't shrink to a point, and `length` grows along the segment. From some triangle on,
+// each longest edge joins the surroundings of both ends of the segment. Its division leaves a half with one of these
+// ends, and a half that reaches both only by its third corner, with a single edge between the ends. The division of
+// that one leaves no triangle that reaches both ends: a contradiction.
+//
+// The walk over longest edges ends because they grow from one triangle to the next.
+bool BandRefiner::run(std::vector<ParameterPoint>& vertices, std::vector<Triangle>& triangles, std::size_t first,
+                      const Demands& demands) {
   large_.clear();
   for (std::size_t t = first; t < triangles.size(); ++t)
-    if (is_large(triangles[t])) large_.push_back(static_cast<std::uint32_t>(t));
-  if (large_.empty()) return;
-  edges_.clear();
-  for (std::size_t t = first; t < triangles.size(); ++t)
-    for (std::size_t c = 0; c < 3; ++c)
-      add_edge(triangles[t][c], triangles[t][(c + 1) % 3], static_cast<std::uint32_t>(t));
+    if (demands.is_large(triangles[t])) large_.push_back(static_cast<std::uint32_t>(t));
+  if (large_.empty()) return true;
+  mesh_.link(triangles, first);
+  odd_divisions_.assign(triangles.size() - first, 0);
   while (!large_.empty()) {
-    const std::uint32_t t = large_.back();
-    large_.pop_back();
-    const Triangle triangle = triangles[t];
-    if (!is_large(triangle)) continue;
-    std::uint32_t a = triangle[2], b = triangle[0];
-    for (std::size_t c = 0; c < 2; ++c)
-      if (length(triangle[c], triangle[c + 1]) > length(a, b)) a = triangle[c], b = triangle[c + 1];
-    const auto edge = edges_.find(key(a, b));
-    const std::array<std::uint32_t, 2> beside = edge->second;
-    if (beside[1] == none) continue;
-    edges_.erase(edge);
-    const auto m = static_cast<std::uint32_t>(vertices.size());
-    vertices.push_back({(vertices[a].u + vertices[b].u) / 2, (vertices[a].v + vertices[b].v) / 2});
-    for (const std::uint32_t side : beside) {
-      large_.push_back(divide(triangles, side, a, b, m));
-      large_.push_back(side);
+    const std::uint32_t triangle = large_.back();
+    if (demands.is_large(triangles[triangle])) {
+      if (demands.cancel && demands.cancel->load(std::memory_order_relaxed)) return true;
+      if (const BandMesh::Edge edge = find_edge(triangle, demands); edge.exists()) {
+        if (triangles.size() + 2 > demands.max_triangles) return false;
+        divide(edge, vertices, demands);
+        continue;
+      }
     }
+    large_.pop_back();
   }
+  return true;
 }
 
 }  // namespace tessera::inline abi_0_1

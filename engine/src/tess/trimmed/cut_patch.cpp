@@ -20,11 +20,49 @@ std::size_t piece_of(double u0, double u1, double v0, double v1) {
   return half_v ? 3 + high_v : 0;
 }
 
+constexpr double parameter_error = 0x1p-24;  // of a box's width: three roundings
+
 /// The largest odd rate whose cells are no smaller than `width`. Bounds of odd rates hold wherever a cell lies.
 int rate_of(double width) {
   const int rate = width * max_rate > 1 ? static_cast<int>(1 / width) : max_rate;
   return std::max(1, rate - (rate % 2 == 0));
 }
+
+/// The measure of edges that are halved until triangles are no longer large.
+///
+/// Proof that a large triangle has an edge with a measure of 1/2: with boxes h x k, its distance is at most
+///   (h^2 uu + 2 h k uv + k^2 vv) / 8 <= (h^2 (uu + s uv) + k^2 (vv + uv / s)) / 8 = room (h^2 a + k^2 b),
+/// for any s > 0; cells are no larger than h^2 a <= 1 and k^2 b <= 1 if triangles must not be wider than these. So the
+/// triangle's box has a measure h^2 a + k^2 b above 1. One edge has all of its width, and one has all of its height.
+class EdgeMeasure {
+ public:
+  /// `room`: of the distance, infinite if there is no limit. `width`, `height`: of cells.
+  EdgeMeasure(const ChordBound& chord, double room, double width, double height, bool in_cells) {
+    if (std::isfinite(room)) {
+      SecondDerivatives most;
+      for (const SecondDerivatives& piece : chord.pieces())
+        most = {std::max(most.uu, piece.uu), std::max(most.uv, piece.uv), std::max(most.vv, piece.vv)};
+      const double s = height / width;
+      a_ = (most.uu + s * most.uv) / (8 * room), b_ = (most.vv + most.uv / s) / (8 * room);
+    }
+    if (in_cells) a_ = std::max(a_, 1 / (width * width)), b_ = std::max(b_, 1 / (height * height));
+  }
+  bool is_finite() const { return std::isfinite(a_ + b_); }
+  /// The measure of an edge with this box. It is 0 where a half of the edge would have more than 3/4 of it, as the
+  /// boxes of triangles are taken to be wider by the errors of parameters.
+  double operator()(const CutPatch::Box& box) const {
+    const double width = std::max(box.width(), 0.0), height = std::max(box.height(), 0.0);
+    const double whole = sum(width, height);
+    return 4 * sum(width / 2, height / 2) <= 3 * whole ? whole : 0;
+  }
+
+ private:
+  double sum(double width, double height) const {
+    const double h = width + parameter_error, k = height + parameter_error;
+    return h * h * a_ + k * k * b_;
+  }
+  double a_ = 0, b_ = 0;
+};
 
 }  // namespace
 
@@ -44,6 +82,7 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   out.vertices.clear(), out.triangles.clear(), out.on_borders.clear();
   out.loop_segments.clear(), out.side_vertices.clear();
   out.distance = out.sliver = 0;
+  out.has_too_many = false;
   out.widest = {max_rate - 1, max_rate - 1};
   const double sliver = limits.sliver;
   for (limits.chord_share = 1; limits.chord_share > 0.01; limits.chord_share /= 4) {
@@ -58,7 +97,8 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
     return;
   }
   number(collapsed, limits.edges != nullptr, out);
-  refine(limits, chord, out);
+  out.has_too_many = !refine(limits, chord, out);
+  if (out.has_too_many) return;
   merge(limits, out);
   out.whole = band_;
   measure(limits.segments, chord, out);
@@ -175,9 +215,9 @@ bool CutPatch::is_cell(const Triangle& first, const Triangle& second) const {
          (b.u == a.u && b.v == c.v && d.u == c.u && d.v == a.v);
 }
 
-// Bounds of a half or a quarter hold for triangles within it. A parameter is off by three roundings.
+// Bounds of a half or a quarter hold for triangles within it.
 double CutPatch::Box::distance(const ChordBound& chord) const {
-  return chord.pieces()[piece_of(u0, u1, v0, v1)].chord(width() + 0x1p-24, height() + 0x1p-24);
+  return chord.pieces()[piece_of(u0, u1, v0, v1)].chord(width() + parameter_error, height() + parameter_error);
 }
 
 void CutPatch::measure(const Triangle& triangle, const ChordBound& chord) {
@@ -186,23 +226,29 @@ void CutPatch::measure(const Triangle& triangle, const ChordBound& chord) {
   widest = {std::min(widest.u, rate_of(box.width())), std::min(widest.v, rate_of(box.height()))};
 }
 
-void CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out) {
+bool CutPatchMaker::refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out) {
   // Where slivers take more than their share, halves would not help.
   const double left = limits.room - cutter_.sliver_bound();
   const double room = left > 0.25 * limits.room ? left : std::numeric_limits<double>::infinity();
   const double width = 1.0 / limits.segments.u.rate(), height = 1.0 / limits.segments.v.rate();
+  const EdgeMeasure measure(chord, room, width, height, limits.in_cells);
+  if (!measure.is_finite()) return true;
   constexpr double rounded = 1 + 0x1p-40;
   const auto is_large = [&](const CutPatch::Triangle& triangle) {
     const CutPatch::Box box = out.box_of(triangle);
     const bool is_wide = box.width() > rounded * width || box.height() > rounded * height;
     return (limits.in_cells && is_wide) || (std::isfinite(room) && !(box.distance(chord) <= room));
   };
-  const auto length = [&](std::uint32_t a, std::uint32_t b) {
-    const CutPatch::Box box = out.box_of({a, b, b});
-    return std::max(box.width() / width, box.height() / height);
+  const auto length = [&](std::uint32_t a, std::uint32_t b) { return measure(out.box_of({a, b, b})); };
+  const auto middle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    const CutPatch::Box ends = out.box_of({a, b, b}), others = out.box_of({c, d, d});
+    const CutPatch::Box &of_u = ends.width() < 0 ? others : ends, &of_v = ends.height() < 0 ? others : ends;
+    return ParameterPoint{(of_u.u0 + of_u.u1) / 2, (of_v.v0 + of_v.v1) / 2};
   };
-  refiner_.run(out.vertices, out.triangles, band_, is_large, length);
+  const bool is_done =
+      refiner_.run(out.vertices, out.triangles, band_, {is_large, length, middle, limits.max_triangles, limits.cancel});
   points_.resize(out.vertices.size(), {std::nan(""), std::nan("")});  // new vertices lie on no border
+  return is_done;
 }
 
 // Chords may be shorter than the resolution of positions. Vertices in one place are joined by index, so each edge

@@ -46,6 +46,7 @@ struct CutPatch {
 
   std::uint32_t patch = 0;
   bool is_crossed = false;               ///< chords still cross after all divisions, so it has no triangles
+  bool has_too_many = false;             ///< it needs more triangles than allowed, so it is not whole
   std::vector<ParameterPoint> vertices;  ///< in the patch's own parameters; those of its grid come first, line by line
   /// Counter-clockwise in the parameters. The first `whole` are those of whole cells, two and two.
   std::vector<Triangle> triangles;
@@ -115,6 +116,7 @@ class CutPatchMaker {
   /// `out.patch` and `out.same` are the caller's, the rest is written.
   ///
   /// Where chords cross, they are made finer, to a 64th; if they still cross then, they are divided where they do.
+  /// If cancelled, it stops early: what it wrote is then of no use.
   void make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut, TrimmedPatch limits,
             const std::array<Segments, 4>& borders, EdgeMask collapsed, const ChordBound& chord, CutPatch& out);
 
@@ -122,8 +124,8 @@ class CutPatchMaker {
   bool run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
            const std::array<Segments, 4>& borders, CutPatch& out);
   void number(EdgeMask collapsed, bool names_edges, CutPatch& out);
-  /// Halves the triangles of the band that are too large.
-  void refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
+  /// Halves the triangles of the band that are too large. Returns false if there would be too many.
+  bool refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
   /// Merges vertices that rounding puts in one place, and leaves out the triangles between them.
   void merge(const TrimmedPatch& limits, CutPatch& out);
   /// Finds the segments of loops that are edges of one triangle.

@@ -2,7 +2,9 @@
 // One patch of a trimmed face: its polygon, its triangles and their bound.
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -45,6 +47,8 @@ struct TrimmedPatch {
   std::array<bool, 4> is_shared{};     ///< by Side: whether another patch has the same border, as across a seam
   const EdgeDemands* edges = nullptr;  ///< set if loops name edges of a shape
   double chord_share = 1;              ///< the largest length of a chord, in cells
+  std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 /// The limits of chords in a patch.
