@@ -302,6 +302,34 @@ TEST(CutCells, OfNarrowStripsStaySmall) {
   }
 }
 
+// A grid of one column, or of one row, whose outer loop runs along sides of cells: lines that begin on such a side
+// divide the band as well, so its triangles span about one cell.
+TEST(CutCells, OfOneColumnAreDividedAlongItsLines) {
+  for (const bool is_row : {false, true}) {
+    for (const int count : {1, 2, 3, 7, 40}) {
+      const double size = 1000 * count;
+      Loops loops = even_grid(1, count);
+      loops.u.back() = 20000;
+      loops.add_rectangle();
+      const double low = std::round(0.31 * size), high = std::round(0.77 * size), step = (high - low) / count;
+      for (int k = 0; k <= count; ++k) loops.points.push_back({11000, std::round(high - step * k)});
+      for (int k = 0; k <= count; ++k) loops.points.push_back({8000, std::round(low + step * k)});
+      loops.close();
+      if (is_row) {
+        std::swap(loops.u, loops.v);
+        for (ParameterPoint& p : loops.points) std::swap(p.u, p.v);
+      }
+      const Cut result = cut(loops);
+      expect_sound(loops, result);
+      for (const auto& [a, b, c] : result.band) {
+        const auto across = [&](std::uint32_t k) { return is_row ? result.points[k].u : result.points[k].v; };
+        const auto [least, most] = std::minmax({across(a), across(b), across(c)});
+        EXPECT_LE(most - least, 2000) << count;
+      }
+    }
+  }
+}
+
 TEST(CutCells, OfCrossingLoopsAreRefused) {
   Loops loops = even_grid(6, 6);
   for (const ParameterPoint p : {ParameterPoint{700, 700}, {5300, 5300}, {5300, 700}, {700, 5300}})

@@ -89,7 +89,7 @@ void BandCuts::follow_side(std::uint32_t i, std::uint32_t j, bool along_v) {
     return false;
   });
   std::ranges::sort(crossings_, {}, &Crossing::at);
-  bool is_inside = along_v ? marks_->is_inside_along_v(first) : marks_->is_inside_along_u(first);
+  bool is_inside = along_v ? marks_->is_inside_after_v(first) : marks_->is_inside_after_u(first);
   PieceEnd from = end_at(first);
   for (const Crossing& crossing : crossings_) {
     const PieceEnd to = end_at(crossing, along_v);
