@@ -84,14 +84,20 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   out.distance = out.sliver = 0;
   out.has_too_many = false;
   out.widest = {max_rate - 1, max_rate - 1};
-  const double sliver = limits.sliver;
-  for (limits.chord_share = 1; limits.chord_share > 0.01; limits.chord_share /= 4) {
-    limits.sliver = sliver * limits.chord_share;
-    out.is_crossed = !run(region, sides, cut.place, limits, borders, out);
+  const auto run_with = [&, sliver = limits.sliver](double chord_share) {
+    limits.chord_share = chord_share;
+    limits.sliver = sliver * chord_share;
+    return run(region, sides, cut.place, limits, borders, out);
+  };
+  constexpr double finest = 1.0 / 64;
+  out.is_crossed = true;
+  for (double share = 1; out.is_crossed && share >= finest; share /= 4) out.is_crossed = !run_with(share);
+  // Loops that cross themselves or each other keep what an odd number of them encloses. Finer chords cross as well, so
+  // the coarsest ones are divided where they do; the finest, where this makes too many crossings.
+  for (const double share : {1.0, finest}) {
     if (!out.is_crossed) break;
+    out.is_crossed = !run_with(share) && !cutter_.cut_crossing();
   }
-  // Loops that cross themselves or each other keep what an odd number of them encloses.
-  if (out.is_crossed) out.is_crossed = !cutter_.cut_crossing();
   if (out.is_crossed) {
     out.open_edges = 0;
     return;
