@@ -54,4 +54,25 @@ void BandMesh::divide(Edge edge, std::uint32_t middle) {
   join(half, other);
 }
 
+std::pair<BandMesh::Triangle, BandMesh::Triangle> BandMesh::flipped(Edge edge) const {
+  const Edge other = across(edge);
+  Triangle own = triangle(edge.triangle), others = triangle(other.triangle);
+  own[next(edge.corner)] = apex(other);
+  others[next(other.corner)] = apex(edge);
+  return {own, others};
+}
+
+bool BandMesh::flip(Edge edge) {
+  const Edge other = across(edge);
+  assert(other.exists());
+  const Edge diagonal{edge.triangle, next(edge.corner)}, other_diagonal{other.triangle, next(other.corner)};
+  const Edge beside = across(diagonal), beside_other = across(other_diagonal);
+  if (beside.triangle == other.triangle || beside_other.triangle == edge.triangle) return false;
+  std::tie((*triangles_)[edge.triangle], (*triangles_)[other.triangle]) = flipped(edge);
+  join(edge, beside_other);
+  join(other, beside);
+  join(diagonal, other_diagonal);
+  return true;
+}
+
 }  // namespace tessera::inline abi_0_1

@@ -35,6 +35,13 @@ class BandMesh {
   /// appended: first that of `edge`'s triangle, then that of the neighbour.
   void divide(Edge edge, std::uint32_t middle);
 
+  /// Replaces an edge that has a neighbour by the other diagonal of its two triangles, from c to d. With a and b the
+  /// edge's ends, its triangle becomes (a, d, c), the neighbour (b, c, d). Returns false, and does nothing, if the two
+  /// share another edge as well.
+  bool flip(Edge edge);
+  /// The triangles that flip() makes of the edge's triangle and of the neighbour.
+  std::pair<Triangle, Triangle> flipped(Edge edge) const;
+
   static std::uint32_t next(std::uint32_t corner) { return corner == 2 ? 0 : corner + 1; }
   static std::uint32_t before(std::uint32_t corner) { return corner == 0 ? 2 : corner - 1; }
 

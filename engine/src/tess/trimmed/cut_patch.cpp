@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/impl_access.h"
+#include "tess/trimmed/band_flipper.h"
 #include "tess/trimmed/divided_chords.h"
 #include "trim/trim_region_impl.h"
 
@@ -64,6 +65,30 @@ class EdgeMeasure {
   double a_ = 0, b_ = 0;
 };
 
+/// Flips edges of the band, from triangle `first` on, that fold it. Boxes of triangles stay within the limits.
+void unfold(const TrimmedPatch& limits, double sliver, const ChordBound& chord, std::size_t first, CutPatch& out) {
+  const bool has_room = std::isfinite(limits.room);
+  const double room = has_room ? limits.room - sliver : 0;
+  constexpr double flat_share = 0x1p-10;  // flatter patches have folds far below the tolerance
+  if (!(chord.pieces()[0].chord(1, 1) > (has_room ? flat_share * limits.room : 0))) return;
+  const auto is_pole = [&](std::uint32_t corner) { return std::ranges::find(out.poles, corner) != out.poles.end(); };
+  const auto may_flip = [&](const CutPatch::Triangle& a, const CutPatch::Triangle& b, const CutPatch::Triangle& new_a,
+                            const CutPatch::Triangle& new_b) {
+    if (std::ranges::any_of(a, is_pole) || std::ranges::any_of(b, is_pole)) return false;
+    double width = limits.in_cells ? 1.0 / limits.segments.u.rate() : 1, distance = room;
+    double height = limits.in_cells ? 1.0 / limits.segments.v.rate() : 1;
+    for (const CutPatch::Box& box : {out.box_of(a), out.box_of(b)}) {
+      width = std::max(width, box.width()), height = std::max(height, box.height());
+      distance = std::max(distance, box.distance(chord));
+    }
+    return std::ranges::all_of(std::array{out.box_of(new_a), out.box_of(new_b)}, [&](const CutPatch::Box& box) {
+      return box.width() <= width && box.height() <= height && (!has_room || box.distance(chord) <= distance);
+    });
+  };
+  PatchPoints points(*limits.rounding.patch, limits.rounding.origin);
+  BandFlipper(points, out.vertices).run(out.triangles, first, may_flip);
+}
+
 }  // namespace
 
 FaceSides::FaceSides(const TrimRegion& region) {
@@ -105,6 +130,7 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
   number(collapsed, limits.edges != nullptr, out);
   out.has_too_many = !refine(limits, chord, out);
   if (out.has_too_many) return;
+  unfold(limits, cutter_.sliver_bound(), chord, band_, out);
   merge(limits, out);
   out.whole = band_;
   measure(limits.segments, chord, out);
