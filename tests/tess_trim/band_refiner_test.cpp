@@ -3,6 +3,7 @@
 #include "tess/trimmed/band_refiner.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "tess_trim/plane_reference.h"
@@ -31,7 +32,7 @@ bool is_large(const Points& points, const std::array<std::uint32_t, 3>& triangle
   return box.width * limits.a > 1 || box.height * limits.b > 1;
 }
 
-bool refine(Points& points, Triangles& triangles, const Limits& limits) {
+bool refine(Points& points, Triangles& triangles, const Limits& limits, const std::atomic<bool>* cancel = nullptr) {
   const auto large = [&](const BandRefiner::Triangle& triangle) { return is_large(points, triangle, limits); };
   const auto length = [&](std::uint32_t a, std::uint32_t b) {
     const Box box = box_of(points, std::array{a, b});
@@ -40,7 +41,7 @@ bool refine(Points& points, Triangles& triangles, const Limits& limits) {
   const auto middle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t, std::uint32_t) {
     return ParameterPoint{(points[a].u + points[b].u) / 2, (points[a].v + points[b].v) / 2};
   };
-  return BandRefiner().run(points, triangles, 0, {large, length, middle, limits.max_triangles, nullptr});
+  return BandRefiner().run(points, triangles, 0, {large, length, middle, limits.max_triangles, cancel});
 }
 
 // A large triangle whose longest edge has no second triangle, and neighbours whose longest edges are its others: their
@@ -120,6 +121,15 @@ TEST(BandRefiner, StopsAtItsLimit) {
   EXPECT_FALSE(refine(points, triangles, {64, 64, 1000}));
   EXPECT_LE(triangles.size(), 1000u);
   EXPECT_EQ(surface_of(points, triangles).open.size(), 256u);
+}
+
+TEST(BandRefiner, StopsWhenCancelled) {
+  Points points;
+  Triangles triangles;
+  make_square(64, points, triangles);
+  const std::atomic<bool> cancel = true;
+  EXPECT_TRUE(refine(points, triangles, {64, 64}, &cancel));
+  EXPECT_EQ(triangles.size(), 256u);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(CutPatches, OfLoopsThatCrossThemselvesStayCoarse) {
   }
 }
 
-/// Up to three rings of random corners, with holes: many corners lie on the domain's borders, and some rings are needles.
+/// Up to three rings of random corners, with holes: many corners lie on the domain's borders, some rings are needles.
 std::vector<TrimLoop> random_rings(std::mt19937& random, const Place& at) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<TrimLoop> all;

@@ -30,6 +30,8 @@ namespace {
 constexpr double cell_share = 0.6, sliver_share = 0.25;
 constexpr double band_share = 1.5;  // a bound of most triangles of the band over that of cells
 constexpr int max_attempts = 24;
+// A patch ends the plan at some times the limit on all triangles, so that messages can say how many a mesh takes.
+constexpr std::uint64_t max_of_patch = std::uint64_t{1} << 31;
 constexpr std::size_t cuts_per_task = 4, rooms_per_task = 64;
 
 }  // namespace
@@ -77,7 +79,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, double 
   room.limits.in_cells = options_.angle || options_.camera;
   room.limits.rounding = {&set_->patches[patch], set_->origin, options_.f64_positions, roundings_[patch]};
   room.limits.domain = set_->sources[patch].domain;
-  room.limits.max_triangles = request.max_triangles;
+  room.limits.max_triangles = 8 * std::min(request.max_triangles, max_of_patch / 8);
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
 }

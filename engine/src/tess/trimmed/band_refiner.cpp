@@ -48,10 +48,10 @@ void BandRefiner::divide(BandMesh::Edge edge, std::vector<ParameterPoint>& verti
 // Proof that it ends. If it did not, some triangle would have an endless row of descendants, each a half of the one
 // before (König's lemma: each division makes two). They lie in each other, so they shrink to a segment, or a point. Of
 // the edges that are divided, all but a few are the longest of these triangles, and at least as long as the longest
-// edge of a large triangle: so they don't shrink to a point, and `length` grows along the segment. From some triangle on,
-// each longest edge joins the surroundings of both ends of the segment. Its division leaves a half with one of these
-// ends, and a half that reaches both only by its third corner, with a single edge between the ends. The division of
-// that one leaves no triangle that reaches both ends: a contradiction.
+// edge of a large triangle: so they don't shrink to a point, and `length` grows along the segment. From some triangle
+// on, each longest edge joins the surroundings of both ends of the segment. Its division leaves a half with one of
+// these ends, and a half that reaches both only by its third corner, with a single edge between the ends. The division
+// of that one leaves no triangle that reaches both ends: a contradiction.
 //
 // The walk over longest edges ends because they grow from one triangle to the next.
 bool BandRefiner::run(std::vector<ParameterPoint>& vertices, std::vector<Triangle>& triangles, std::size_t first,

@@ -115,8 +115,8 @@ class CutPatchMaker {
   /// Cuts a patch. `cut`: the patch, of this region. `limits.domain` is set here. `borders`: the segments of its sides.
   /// `out.patch` and `out.same` are the caller's, the rest is written.
   ///
-  /// Where chords cross, they are made finer, to a 64th; if they still cross then, the first ones are divided where they
-  /// do. The bound of slivers holds for either.
+  /// Where chords cross, they are made finer, to a 64th; if they still cross then, the first ones are divided where
+  /// they do. The bound of slivers holds for either.
   /// If cancelled, it stops early: what it wrote is then of no use.
   void make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut, TrimmedPatch limits,
             const std::array<Segments, 4>& borders, EdgeMask collapsed, const ChordBound& chord, CutPatch& out);
