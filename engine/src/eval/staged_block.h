@@ -221,12 +221,13 @@ class StagedBlock {
     }
   }
 
-  /// Whether one kernel can compute and write the outputs: positions and normals, interleaved, of bicubic patches.
+  /// Whether one kernel can compute and write the outputs: positions and normals, interleaved, of bicubic patches that
+  /// have their parameters in common.
   bool is_mesh(const kernel::GridJob<T>& job) const {
     if constexpr (sizeof(T) != 4 || planted_slowdown > 0) return false;
     return kernels_.mesh_lines_f32 && layout_.one_record() && layout_.record_width() == 6 && !out_.position.empty() &&
-           !out_.normal.empty() && job.degree_u == 3 && job.degree_v == 3 && !job.rational && !job.normal_kind &&
-           !job.curvature_kind;
+           !out_.normal.empty() && job.degree_u == 3 && job.degree_v == 3 && !job.rational && !job.by_lane &&
+           !job.normal_kind && !job.curvature_kind;
   }
   Isa run_mesh(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, int lane_count) {
     job.u_begin = first_u;
