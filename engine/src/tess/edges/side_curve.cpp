@@ -1,6 +1,7 @@
 #include "tess/edges/side_curve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -81,8 +82,9 @@ bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t
   if (border == other) return false;
   const Side side = all_sides[border % 4], other_side = all_sides[other % 4];
   const PackedBorder a(set, border / 4, side), b(set, other / 4, other_side);
-  if (!equal(a, b, false)) return true;
-  if (!equal(a, b, true)) return false;
+  const bool same = equal(a, b, false), opposite = equal(a, b, true);
+  assert(same || opposite);
+  if (same != opposite) return opposite;
   const SideCurve p(set.patches[border / 4], side), q(set.patches[other / 4], other_side);
   return distance_bound(p, q, true) < distance_bound(p, q, false);
 }

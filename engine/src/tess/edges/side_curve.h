@@ -44,8 +44,8 @@ double distance_bound(SideCurve a, SideCurve b, bool reversed);
 /// points and weights from that end which has the lesser ones. Curves neither of which comes first are the same.
 bool comes_before(const SideCurve& a, const SideCurve& b);
 
-/// Whether a border runs against another of its edge, both as 4 * patch + side. If their float bits are the same in
-/// both directions, the control points in double decide.
+/// Whether a border runs against another, both as 4 * patch + side. Their float bits must be the same, in one direction
+/// at least. If they are the same in both, the control points in double decide.
 bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t other);
 
 /// Splits the edges of `edges`, whose borders' float control points are the same bits, where those in double are not

@@ -133,7 +133,8 @@ void ProvenMesh::touch_edited(const PatchSet::Impl& set) {
 }
 
 Result<std::size_t> ProvenMesh::redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution) {
-  if (outcome == PlanUpdate::Outcome::redivided) {
+  // Borders that edits have moved apart are joined no longer once the topology is made anew: that needs new edges.
+  if (outcome == PlanUpdate::Outcome::redivided && update_->planner().edges_hold()) {
     CertifiedPlan plan = update_->redivided(of(impl_of(set)));
     const MeshCapacity size = plan.capacity();
     if (size.triangles <= options_.max_triangles && size.vertices <= max_vertices) {

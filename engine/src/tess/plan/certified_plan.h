@@ -18,6 +18,7 @@
 #include "tess/cells/stitched_patch.h"
 #include "tess/closing/closed_edges.h"
 #include "tess/closing/edge_stops.h"
+#include "tess/edges/edge_directions.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
 #include "tess/plan/cut_shares.h"
@@ -162,6 +163,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::span<const PatchShape> shapes() const { return shapes_; }
   const Weld& weld() const { return weld_; }
   const SharedEdges& edges() const { return edges_; }  ///< after welding
+  /// Whether the borders of each edge are the same bits in the set as it is now, after edits, but for welded ones.
+  bool edges_hold() const { return edge_directions().hold(); }
   /// The share of the tolerance that the rounding of vertices from float control points may take. It costs up to a
   /// third more triangles, and doubles take five times as long.
   static constexpr double max_rounding = 0.25;
@@ -314,7 +317,9 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const CertifiedPlan& plan) const;
-  /// Returns for each border whether it runs against the leading border of its edge.
+  /// Returns the directions of borders along their edges. The set must be as it was when the edges were found.
+  EdgeDirections edge_directions() const;
+  /// Returns for each border whether it runs against the leading border of its edge. Requires edges_hold().
   std::vector<std::uint8_t> borders_against() const;
   /// The shapes by which patches are divided and welded: cut ones have no area.
   std::span<const PatchShape> own_shapes() const { return drawn_.empty() ? shapes_ : drawn_; }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tess/edges/edge_needs.h"
-#include "tess/edges/side_curve.h"
 #include "tess/plan/certified_plan.h"
 
 namespace tessera::inline abi_0_1 {
@@ -18,23 +17,13 @@ constexpr int max_to_straddle = 2;
 
 }  // namespace
 
+EdgeDirections CertifiedPlanner::edge_directions() const { return {*set_, edges_, weld_, divided_shapes(), shapes_}; }
+
 std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
-  constexpr std::uint32_t none = SharedEdges::none;
-  const std::size_t borders = 4 * shapes_.size();
-  std::vector<std::uint32_t> welds(borders, none), leading(edges_.count(), none);
-  for (std::uint32_t k = 0; k < weld_.borders.size(); ++k) welds[weld_.borders[k].to] = k;
-  const auto edge = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
-  // Borders of curves are welded to none, and have no segments.
-  const auto counts = [&](std::uint32_t border) { return edge(border) != none && !shapes_[border / 4].is_curve; };
-  for (std::uint32_t border = 0; border < borders; ++border)
-    if (counts(border) && welds[border] == none && leading[edge(border)] == none) leading[edge(border)] = border;
-  std::vector<std::uint8_t> against(borders, 0);
-  for (std::uint32_t border = 0; border < borders; ++border) {
-    if (!counts(border) || leading[edge(border)] == none) continue;
-    const VertexCopies::Border weld =
-        welds[border] == none ? VertexCopies::Border{border, border, false} : weld_.borders[welds[border]];
-    against[border] = weld.reversed != runs_against(*set_, weld.from, leading[edge(border)]);
-  }
+  const EdgeDirections directions = edge_directions();
+  std::vector<std::uint8_t> against(4 * shapes_.size(), 0);
+  for (std::uint32_t border = 0; border < against.size(); ++border)
+    if (!shapes_[border / 4].is_curve) against[border] = directions.runs_against_leading(border);
   return against;
 }
 

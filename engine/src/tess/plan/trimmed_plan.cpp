@@ -58,8 +58,13 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, double 
   room.limits.segments = plan.segments_[patch];
   // Parameters of a vertex in its patch are off by three roundings.
   room.given = roundings_[patch] + 0x1p-51 * (room.limits.speed.u + room.limits.speed.v) + fit_error_;
-  for (const CutPatch::SameBorder& same : cut.same)
-    if (same.border != CutPatch::none) room.given = std::max(room.given, roundings_[same.border / 4] + fit_error_);
+  for (const Side side : all_sides) {
+    const CutPatch::SameBorder same = cut.same[static_cast<std::size_t>(side)];
+    if (same.border == CutPatch::none) continue;
+    const SideCurve own(set_->patches[patch], side), taken(set_->patches[same.border / 4], all_sides[same.border % 4]);
+    const double moved = distance_bound(own, taken, same.reversed) + roundings_[same.border / 4];
+    room.given = std::max(room.given, moved + fit_error_);
+  }
   room.tolerance = share * request.tolerance;
   double sliver = std::numeric_limits<double>::infinity();
   if (options_.camera) {
@@ -118,21 +123,15 @@ double CertifiedPlanner::bound_cut(const CutRoom& room, const CutPatch& cut, Cer
 }
 
 void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
-  std::vector<std::uint32_t> whole(edges_.count(), CutPatch::none);  // the first border that is not copied from another
-  std::vector<std::uint8_t> is_welded(4 * shapes_.size(), 0);
-  for (const VertexCopies::Border& copy : weld_.borders) is_welded[copy.to] = 1;
+  const EdgeDirections directions = edge_directions();
   const std::span<const PatchShape> shapes = divided_shapes();
-  for (std::uint32_t border = 0; border < is_welded.size(); ++border) {
-    if (shapes[border / 4].is_curve || is_welded[border]) continue;
-    const std::uint32_t edge = edges_.edge(border / 4, all_sides[border % 4]);
-    if (edge != SharedEdges::none && whole[edge] == CutPatch::none) whole[edge] = border;
-  }
   for (CutPatch& cut : plan.rare_->cuts) {
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(cut.patch, side);
-      if (edge == SharedEdges::none || whole[edge] == CutPatch::none) continue;
-      const std::uint32_t border = 4 * cut.patch + static_cast<std::uint32_t>(side);
-      cut.same[static_cast<std::size_t>(side)] = {whole[edge], runs_against(*set_, border, whole[edge])};
+      if (edge == SharedEdges::none) continue;
+      const std::uint32_t whole = directions.leading(edge), border = 4 * cut.patch + static_cast<std::uint32_t>(side);
+      if (whole == SharedEdges::none || shapes[whole / 4].is_curve) continue;
+      cut.same[static_cast<std::size_t>(side)] = {whole, directions.runs_against_leading(border)};
     }
   }
 }
