@@ -55,6 +55,17 @@ struct Division {
     }
   }
 
+  /// Whether all borders are points.
+  bool has_one_corner() const {
+    return std::ranges::all_of(all_sides, [this](Side side) { return collapsed.has(edge_of(side)); });
+  }
+  /// Adds inner points where a patch has no triangles, because opposite borders are points: so many that there are some.
+  void add_inner_points(PatchSegments asked) {
+    const int least = has_one_corner() ? 4 : 2;  // even, so that no cell crosses the middle
+    inner = {asked.u.rate() >= least ? asked.u : least, asked.v.rate() >= least ? asked.v : least};
+    across_u = false;
+  }
+
   std::size_t inner_count() const {
     return static_cast<std::size_t>(inner.u.rate() - 1) * static_cast<std::size_t>(inner.v.rate() - 1);
   }

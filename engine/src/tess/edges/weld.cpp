@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/union_find.h"
+#include "tess/edges/short_sides.h"
 #include "tess/edges/side_curve.h"
 
 namespace tessera::inline abi_0_1 {
@@ -39,40 +40,6 @@ struct EdgePlace {
   Vec3 middle;  ///< of the edge's ends, relative to the set's origin
   double along;
 };
-
-using Lanes = std::array<float, PatchSet::lanes>;
-
-/// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed
-/// corners' difference. Loops over lanes are plain enough to be vectorized.
-float shortest_side(const PatchSet::Impl& set, std::size_t block) {
-  const BlockGroup& group = set.group_of_block(block);
-  const float* const net =
-      set.f32.bernstein.data() + group.first_value + (block - group.first_block) * group.block_values;
-  const std::ptrdiff_t end_u = BorderPlaces(group, Side::u1).first, end_v = BorderPlaces(group, Side::v1).first;
-  const std::array<std::ptrdiff_t, 4> places = {0, end_u, end_u + end_v, end_v};
-  std::array<std::array<Lanes, 3>, 4> corners;
-  for (std::size_t corner = 0; corner < 4; ++corner)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float *const from = net + places[corner], *const values = from + c * PatchSet::lanes;
-      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) corners[corner][c][lane] = values[lane];
-      if (!group.rational) continue;
-      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
-        corners[corner][c][lane] /= from[3 * PatchSet::lanes + lane];
-    }
-  Lanes shortest;
-  shortest.fill(std::numeric_limits<float>::infinity());
-  for (std::size_t side = 0; side < 4; ++side) {
-    Lanes length{};
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane) {
-        const float way = std::abs(corners[side][c][lane] - corners[(side + 1) % 4][c][lane]);
-        length[lane] = way > length[lane] ? way : length[lane];
-      }
-    for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
-      shortest[lane] = length[lane] < shortest[lane] ? length[lane] : shortest[lane];
-  }
-  return *std::min_element(shortest.begin(), shortest.end());
-}
 
 class Welder {
  public:
@@ -148,13 +115,8 @@ class Welder {
   /// than the reach.
   bool is_thin(std::uint32_t border, std::uint32_t edge) const {
     const std::uint32_t opposite = border / 4 * 4 + (border + 2) % 4;
-    if (edge_of_border(opposite) != edge) return false;
-    const BezierPatch& patch = set_.patches[patch_of(border)];
-    const bool along_u = runs_along_u(side_of(border));
-    for (int i = 0; i <= patch.degree_u(); ++i)
-      for (int j = 0; j <= patch.degree_v(); ++j)
-        if (!(length(patch.point(i, j) - patch.point(along_u ? i : 0, along_u ? 0 : j)) <= rules_.reach)) return false;
-    return true;
+    return edge_of_border(opposite) == edge &&
+           tessera::is_thin(set_.patches[patch_of(border)], side_of(border), rules_.reach);
   }
 
   /// Compares an edge with another, and keeps the other if it is nearer than those before.
@@ -251,7 +213,46 @@ class Welder {
       for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
         for (std::uint32_t side = 0; side < 4; ++side) find_pole(4 * patches[lane] + side);
     }
+    if (!is_pole_.empty()) keep_patches();
     return !is_pole_.empty();
+  }
+  /// Whether a border is a point, by itself or by welding.
+  bool is_made_point(std::uint32_t border) {
+    const std::uint32_t edge = edge_of_border(border);
+    return edge == none || is_pole_[canonical(edge)];
+  }
+  /// Whether welding leaves nothing of a patch but a line or a point: opposite borders become points, and the patch is a
+  /// needle between them.
+  bool vanishes(std::uint32_t patch) {
+    const auto is_point = [&](std::uint32_t side) { return is_made_point(4 * patch + side); };
+    const bool u = is_point(1) && is_point(3), v = is_point(0) && is_point(2);
+    if (shapes_[patch].is_curve || (!u && !v)) return false;
+    const auto is_along = [&](Side side) { return is_needle(set_.patches[patch], side, rules_.reach); };
+    return (u && is_along(Side::v0)) || (v && is_along(Side::u0));
+  }
+  /// Keeps the borders of patches that would vanish, where no neighbour has triangles at what is left of them.
+  void keep_patches() {
+    std::vector<std::uint32_t> vanishing;
+    std::vector<std::uint8_t> is_held(leading_.size(), 0);  // `[canonical edge]`: whether a patch that stays has it
+    for (std::uint32_t patch = 0; patch < shapes_.size(); ++patch)
+      if (vanishes(patch)) vanishing.push_back(patch);
+    if (vanishing.empty()) return;
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (!std::ranges::binary_search(vanishing, border / 4)) is_held[canonical(edge)] = 1;
+    });
+    const auto sides = {0u, 1u, 2u, 3u};
+    std::vector<std::uint32_t> kept;  // edges; all are decided by the same points
+    for (const std::uint32_t patch : vanishing) {
+      const bool is_point = std::ranges::all_of(sides, [&](auto side) { return is_made_point(4 * patch + side); });
+      const auto holds = [&](std::uint32_t side) {
+        const std::uint32_t border = 4 * patch + side, edge = edge_of_border(border);
+        return edge != none && is_held[canonical(edge)] && (is_point || !is_made_point(border));
+      };
+      if (std::ranges::any_of(sides, holds)) continue;
+      for (const std::uint32_t side : sides)
+        if (const std::uint32_t edge = edge_of_border(4 * patch + side); edge != none) kept.push_back(canonical(edge));
+    }
+    for (const std::uint32_t edge : kept) is_pole_[edge] = 0;
   }
   void find_pole(std::uint32_t border) {
     const std::uint32_t edge = edge_of_border(border);

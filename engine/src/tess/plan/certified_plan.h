@@ -103,6 +103,17 @@ class CertifiedPlan {
   };
   void lay_out();
   void set_f64_patches(std::span<const std::uint8_t> patches);
+  /// A patch of an area without triangles: opposite borders are points, and the line between them is the border of
+  /// another, or a point that another has.
+  struct LinePatch {
+    std::uint32_t patch;
+    std::uint32_t holder;  ///< a patch with triangles on that line; SharedEdges::none for points
+  };
+  std::span<const LinePatch> line_patches() const { return rare_ ? rare_->lines : std::span<const LinePatch>(); }
+  void set_line_patches(std::vector<LinePatch> lines) {
+    if (!lines.empty() && !rare_) rare_ = std::make_unique<Rare>();
+    if (rare_) rare_->lines = std::move(lines);
+  }
   /// Counts open_edges() of a mesh with cut patches. `edges`: those of the planner, after welding.
   void count_open_edges_beside_loops(const SharedEdges& edges);
   std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
@@ -119,8 +130,9 @@ class CertifiedPlan {
     std::vector<CutPatch> cuts;
     std::vector<std::uint32_t> crossed, beyond;
     std::optional<ClosedEdges> closed;
+    std::vector<LinePatch> lines;
   };
-  std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, and no vertices come from doubles
+  std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, none is a line, and no vertices come from doubles
   std::uint32_t open_edges_ = 0;
   bool has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;   ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
@@ -268,6 +280,10 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::string wanted(double tolerance) const;
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
+  /// Gives triangles to patches without any, unless those of a neighbour show what is left of them.
+  void keep_from_vanishing(CertifiedPlan & plan) const;
+  /// Whether welding made a patch a point, and a neighbour has triangles there.
+  bool is_welded_spot(std::size_t patch, const CertifiedPlan& plan) const;
   /// The room for the triangles of a cut patch, and for the slivers along its loops.
   struct CutRoom {
     double given = 0;  ///< the errors of its vertices and of the fit

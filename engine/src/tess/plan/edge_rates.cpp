@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tess/edges/edge_needs.h"
+#include "tess/edges/short_sides.h"
 #include "tess/plan/certified_plan.h"
 
 namespace tessera::inline abi_0_1 {
@@ -196,6 +197,40 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
   for (std::size_t k = 0; k < segments.size(); ++k)
     plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));
   plan.open_edges_ = borders.open_edges();
+  keep_from_vanishing(plan);
+}
+
+bool CertifiedPlanner::is_welded_spot(std::size_t patch, const CertifiedPlan& plan) const {
+  // Welding makes such a patch a point only where a neighbour has this point, see weld_borders().
+  return plan.divisions_[patch].has_one_corner() && !shapes_[patch].collapsed.any() &&
+         plan.segments_[patch] == PatchSegments{1, 1} && is_needle(set_->patches[patch], Side::v0, options_.weld.reach);
+}
+
+void CertifiedPlanner::keep_from_vanishing(CertifiedPlan& plan) const {
+  std::vector<std::uint32_t> without;  // patches of an area without triangles
+  for (std::uint32_t k = 0; k < plan.divisions_.size(); ++k)
+    if (const Division& of = plan.divisions_[k]; of.collapsed.any() && !of.empty && of.triangle_count() == 0)
+      without.push_back(k);
+  plan.set_line_patches({});
+  if (without.empty()) return;
+  constexpr std::uint32_t none = SharedEdges::none;
+  std::vector<std::uint32_t> holders(edges_.count(), none);  // `[edge]`: a patch with triangles
+  for (std::uint32_t k = 0; k < plan.divisions_.size(); ++k)
+    for (const Side side : all_sides)
+      if (const std::uint32_t edge = edges_.edge(k, side); edge != none && plan.divisions_[k].triangle_count() > 0)
+        holders[edge] = k;
+  std::vector<CertifiedPlan::LinePatch> lines;
+  for (const std::uint32_t k : without) {
+    std::uint32_t holder = none;
+    for (const Side side : all_sides)
+      if (const std::uint32_t edge = edges_.edge(k, side); edge != none && holder == none) holder = holders[edge];
+    if (holder == none && !is_welded_spot(k, plan)) {
+      plan.divisions_[k].add_inner_points(plan.segments_[k]);
+    } else {
+      lines.push_back({k, holder});
+    }
+  }
+  plan.set_line_patches(std::move(lines));
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -55,7 +55,8 @@ void PlanUpdate::for_proven(const PatchSet::Impl& set, Visit visit) const {
 Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<void(std::uint32_t block)> pack,
                                               const Execution& execution) {
   planner_.set_ = &of.set;
-  is_redivided_ = is_unknown_ = false;
+  is_redivided_ = false;
+  is_unknown_ = moves_line_patches(of);
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (const std::uint32_t block : std::span(touched_.blocks).subspan(begin, end - begin)) {
       pack(block);
@@ -75,6 +76,12 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
       return status;
   }
   return is_unknown_ ? Outcome::unknown : is_redivided_ ? Outcome::redivided : Outcome::kept;
+}
+
+bool PlanUpdate::moves_line_patches(const PlanOfSet& of) const {
+  return std::ranges::any_of(of.plan.line_patches(), [&](const CertifiedPlan::LinePatch& line) {
+    return line.holder == SharedEdges::none || is_touched(of.set, line.patch) || is_touched(of.set, line.holder);
+  });
 }
 
 void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {

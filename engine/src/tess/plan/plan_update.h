@@ -65,6 +65,8 @@ class [[gnu::visibility("hidden")]] PlanUpdate {
     float bound = 0, angle = 0, pixels = 0;
   };
 
+  /// Whether a patch without triangles, or the neighbour whose triangles stand for it, is touched, or may be.
+  bool moves_line_patches(const PlanOfSet& of) const;
   void bound_block(const PlanOfSet& of, std::uint32_t block);
   bool has_copies() const { return !displacements_.empty(); }
   /// Finds the patches whose copied vertices have moved, and how far they lie from their surfaces.

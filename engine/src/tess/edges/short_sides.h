@@ -1,0 +1,20 @@
+#pragma once
+// Tells which patches have short sides, and which are thin strips or needles.
+
+#include <cstddef>
+
+#include "block/patch_set_impl.h"
+#include "tess/cells/patch_side.h"
+
+namespace tessera::inline abi_0_1 {
+
+/// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed
+/// corners' difference.
+float shortest_side(const PatchSet::Impl& set, std::size_t block);
+
+/// Whether no control point of a patch lies farther than `reach` from the one of a side that it is across from.
+bool is_thin(const BezierPatch& patch, Side side, double reach);
+/// Whether all control points of a patch lie within `reach` of the straight line from one end of a side to the other.
+bool is_needle(const BezierPatch& patch, Side side, double reach);
+
+}  // namespace tessera::inline abi_0_1
