@@ -143,12 +143,12 @@ void CertifiedPlanner::bound_pictures(std::size_t block) {
   ScreenSpaceBound::find(*options_.camera, *set_, block, moved, options_.pixels, pictures_.data());
 }
 
-TurningBound CertifiedPlanner::turning_of(std::size_t patch) const {
+CertifiedPlanner::NormalTurning CertifiedPlanner::turning_of(std::size_t patch) const {
   const auto is_made_pole = [&](Side side) {  // by welding
     return divided_shapes()[patch].collapsed.has(edge_of(side)) && !shapes_[patch].collapsed.has(edge_of(side));
   };
-  if (std::none_of(all_sides.begin(), all_sides.end(), is_made_pole))
-    return TurningBound(set_->patches[patch], *options_.angle);
+  const TurningBound turning(set_->patches[patch], *options_.angle);
+  if (turning.is_finite() || std::ranges::none_of(all_sides, is_made_pole)) return {turning};
   BezierPatch moved = set_->patches[patch];
   for (const Side side : all_sides) {
     if (!is_made_pole(side)) continue;
@@ -156,7 +156,7 @@ TurningBound CertifiedPlanner::turning_of(std::size_t patch) const {
     if (!pole) throw std::bad_alloc();  // no other error is possible: the points are those of the patch
     moved = *std::move(pole);
   }
-  return TurningBound(moved, *options_.angle);
+  return {TurningBound(moved, *options_.angle), false};
 }
 
 std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int most) const {
@@ -168,7 +168,7 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   const double tolerance = request.tolerance;
   const double given = roundings_[patch] + fit_error_;
   const ScreenSpaceBound* const picture = options_.camera ? &pictures_[patch] : nullptr;
-  std::optional<TurningBound> turning;
+  std::optional<NormalTurning> turning;
   if (options_.angle && !shapes_[patch].is_curve) turning = turnings_.empty() ? turning_of(patch) : turnings_[patch];
   const ChordBound chord = this->chord(patch);
   Choice choice;
@@ -184,9 +184,9 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
     if (!(limits.pixels > 0)) choice.failure = Failure::rough_pixels;
   }
   if (choice.failure != Failure::none) return choice;
-  const bool bounded = turning && turning->is_finite();
+  const bool bounded = turning && turning->bound.is_finite();
   if (bounded) {
-    limits.turning = &*turning;
+    limits.turning = &turning->bound;
     limits.angle = request.share * *options_.angle;
   }
   std::optional<Rates> rates = rates_for(limits, most);
@@ -205,7 +205,9 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   choice.segments = proven.segments;
   choice.anywhere = proven.anywhere;
   choice.bound = given + proven.distance;
-  if (turning) choice.angle = bounded ? turning->angle(proven.segments) : std::numeric_limits<double>::infinity();
+  if (turning)
+    choice.angle =
+        bounded && turning->is_proven ? turning->bound.angle(proven.segments) : std::numeric_limits<double>::infinity();
   if (picture) choice.pixels = picture->pixels(proven.segments, choice.bound);
   return choice;
 }

@@ -84,7 +84,11 @@ class CertifiedPlan {
   /// Stores vertices that are copies of each other once. Ring vertices that a patch owns follow its inner points.
   void share(const VertexCopies& copies);
   bool shares_vertices() const { return !ring_sources_.empty(); }
-  bool owns_corner(std::size_t corner) const { return !shares_vertices() || ring_sources_[corner].corner == corner; }
+  /// Returns the corner whose patch owns the vertex of a corner.
+  std::uint32_t corner_owner(std::uint32_t corner) const {
+    return shares_vertices() ? ring_sources_[corner].corner : corner;
+  }
+  bool owns_corner(std::size_t corner) const { return corner_owner(static_cast<std::uint32_t>(corner)) == corner; }
   /// Whether the patch owns the points inside a border.
   bool owns_border(std::size_t border) const {
     return !shares_vertices() || (ring_sources_[border].from == border && !ring_sources_[border].is_point);
@@ -250,8 +254,14 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Finds the borders to weld, and adds the displacements to the roundings.
   void find_weld();
   Status bound_turning_and_picture(const Execution& execution);
-  /// Bounds the turning of a patch's normal, also of one whose borders welding makes poles.
-  TurningBound turning_of(std::size_t patch) const;
+  /// How the normal of a patch turns.
+  struct NormalTurning {
+    TurningBound bound;
+    /// False where the surface's own normal has no bound beside a border that welding makes a point: the bound is then
+    /// that of the patch with a pole there, and divides the patch, but proves nothing.
+    bool is_proven = true;
+  };
+  NormalTurning turning_of(std::size_t patch) const;
   /// Bounds what the camera sees of the patches of one block; needs their roundings.
   void bound_pictures(std::size_t block);
   Choice choose(std::size_t patch, const Request& request, int most) const;
@@ -354,7 +364,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double largest_rounding_ = 0;    ///< the largest rounding of vertices before welding
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding
   ChordBlocks chords_;
-  std::vector<TurningBound> turnings_;      ///< `[patch]`, if PlannerOptions::keeps_bounds and there is an angle
+  std::vector<NormalTurning> turnings_;     ///< `[patch]`, if PlannerOptions::keeps_bounds and there is an angle
   std::vector<ScreenSpaceBound> pictures_;  ///< `[patch]`, if there is a camera
 };
 

@@ -108,7 +108,7 @@ double CertifiedPlanner::bound_cut(const CutRoom& room, const CutPatch& cut, Cer
   double excess = std::isfinite(room.tolerance) ? bound / room.tolerance : 0;
   plan.bounds_[k] = cut.is_crossed ? std::numeric_limits<float>::infinity() : rounded_up(bound);
   if (options_.angle && !shapes_[k].is_curve) {
-    const TurningBound turning = turning_of(k);
+    const TurningBound turning = turning_of(k).bound;  // welding does not move borders of cut patches
     const double angle = turning.is_finite() ? turning.angle(cut.widest) : std::numeric_limits<double>::infinity();
     plan.angles_[k] = rounded_up(angle);
     if (turning.is_finite()) excess = std::max(excess, angle / *options_.angle);
