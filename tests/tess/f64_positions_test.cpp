@@ -168,5 +168,27 @@ TEST(FarPartsInDouble, ViewsMustSuitThePlan) {
   EXPECT_EQ(good(split_quads(quads)).positions_f64, mesh.positions_f64);
 }
 
+/// A set of curves alone has an empty mesh, which has no memory to be written to.
+TEST(MeshesWithoutVertices, AreAllocatedWrittenAndFollowed) {
+  const BezierPatch line = polynomial(1, 1, {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}});
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision})
+    for (const bool shares : {false, true}) {
+      PatchSet set = set_of({line, line});
+      TessellationOptions options{.tolerance = 0.1, .share_vertices = shares};
+      options.precision = precision;
+      Tessellation plan = good(Tessellation::make(set, options));
+      EXPECT_EQ(plan.capacity().vertices, 0u);
+      const Mesh allocated = good(plan.allocate());
+      Mesh mesh = allocated;  // a copy has no reserved memory
+      const Status status = plan.run(set, mesh.views());
+      EXPECT_TRUE(status.ok()) << status.message();
+      EXPECT_TRUE(plan.run(set, {}).ok());
+      const std::vector<Vec3> points{{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 0, 0}};
+      const std::vector<std::uint32_t> patch{1};
+      const auto change = plan.update(set, PatchEdits{patch, points}, mesh.views());
+      EXPECT_TRUE(change.ok()) << change.status().message();
+    }
+}
+
 }  // namespace
 }  // namespace tessera::test

@@ -54,11 +54,12 @@ ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
 }
 
 Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
-  if (f64 && out.position_f64.empty())
+  // An array without elements may have no memory, so a mesh without vertices has no view that is not empty.
+  if (f64 && out.position_f64.empty() && wanted.vertices > 0)
     return invalid("the position_f64 view is empty, a plan with positions in double requires it");
   if (!f64 && !out.position_f64.empty())
     return invalid("the position_f64 view must be empty: the plan has no positions in double");
-  if (!f64 && out.position.empty()) return invalid("the position view is empty, it is required");
+  if (!f64 && out.position.empty() && wanted.vertices > 0) return invalid("the position view is empty, it is required");
   if (Status status = check_view("position_f64", out.position_f64, wanted.vertices); !status.ok()) return status;
   if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
   return check_view("normal", out.normal, wanted.vertices);
