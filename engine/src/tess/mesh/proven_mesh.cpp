@@ -167,8 +167,29 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& plann
   }
   joins_ = find_joins(set, plan_, planner.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
                       options_.crease_angle.value_or(0));
-  if (options_.share_vertices) plan_.share(joins_);
+  if (!options_.share_vertices) return {};
+  plan_.share(joins_);
+  weld_shared_corners();
   return {};
+}
+
+void ProvenMesh::weld_shared_corners() {
+  constexpr std::uint32_t none = SharedEdges::none;
+  std::vector<std::uint32_t> goals(4 * plan_.patch_count(), none);  // `[corner that owns a vertex]`
+  std::vector<std::uint8_t> is_listed(goals.size(), 0);
+  const auto note = [&](VertexCopies::Corner& copy) {
+    copy.from = plan_.corner_owner(copy.from);
+    goals[plan_.corner_owner(copy.to)] = copy.from;
+  };
+  std::ranges::for_each(weld_.poles, note);
+  for (VertexCopies::Corner& copy : weld_.corners) {
+    note(copy);
+    is_listed[copy.to] = 1;
+  }
+  for (std::uint32_t corner = 0; corner < goals.size(); ++corner) {
+    const std::uint32_t goal = goals[plan_.corner_owner(corner)];
+    if (goal != none && goal != corner && !is_listed[corner]) weld_.corners.push_back({corner, goal});
+  }
 }
 
 Mesh ProvenMesh::allocate() const {

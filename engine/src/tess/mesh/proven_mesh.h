@@ -51,11 +51,14 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   Status check_attributes(const MeshViews& out) const;
   /// Finds what neighbours share, if anything. Errors: cancelled.
   Status join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution);
+  /// Lists the welded positions of corners by the vertices that are stored: of each that is moved, all corners that
+  /// share it, and the corner that owns the vertex where it goes.
+  void weld_shared_corners();
   /// Writes the copies of vertices after all patches are written: for patches that are written, or that copy from such.
   Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
                       FunctionRef<bool(std::size_t patch)> is_written) const;
 
-  PlanOfSet of(const PatchSet::Impl& set) const { return {set, plan_, joins_, tolerance_, options_.spare}; }
+  PlanOfSet of(const PatchSet::Impl& set) const { return {set, plan_, weld_, joins_, tolerance_, options_.spare}; }
   /// Checks an update; after an error the set's values and the views are as they were.
   Status start(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
   /// Makes the memory for proofs of a set.

@@ -115,11 +115,11 @@ void PlanUpdate::measure_copies(const PlanOfSet& of) {
     look(copies.corners);
     look(copies.poles);
   };
-  look_at_all(planner_.weld());
+  look_at_all(of.weld);
   if (of.plan.shares_vertices()) look_at_all(of.joins);
   for_proven(of.set, [&](std::size_t patch) { displacements_[patch] = 0; });
   const auto is_copied = [&](std::size_t patch) { return copied_.has(of.set.slots[patch]); };
-  measure_displacements(of.set, planner_.weld(), own_roundings_, is_copied, displacements_);
+  measure_displacements(of.set, of.weld, own_roundings_, is_copied, displacements_);
   // Where borders have moved apart, shared vertices follow the patch that owns them and lie beside the other's border.
   if (of.plan.shares_vertices())
     measure_displacements(of.set, of.joins, own_roundings_, is_copied, displacements_, true);

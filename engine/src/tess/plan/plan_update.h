@@ -15,6 +15,7 @@ namespace tessera::inline abi_0_1 {
 struct [[gnu::visibility("hidden")]] PlanOfSet {
   const PatchSet::Impl& set;
   const CertifiedPlan& plan;
+  const VertexCopies& weld;   ///< vertices with a common position
   const VertexCopies& joins;  ///< vertices with a common normal, or stored once
   double tolerance;           ///< the distance, infinite if there is no limit
   double spare;               ///< see KeptSegments

@@ -20,11 +20,12 @@ void for_copies(const VertexCopies::Border& border, const CertifiedPlan& plan, V
   for (int k = 1; k < to.rate(); ++k) visit(to(k), from(opposite ? to.rate() - k : k));
 }
 
+/// `has_own_normals`: whether the patch has been written, so that its normals there are those of the short border.
 Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, const PatchSet::Impl& set,
-                  const MeshViews& out) {
+                  const MeshViews& out, bool has_own_normals) {
   const RingVertices to(plan, pole.to), from(plan, pole.from);
   for (int k = 1; k < to.rate(); ++k) copy_positions(out, from(0), to(k));
-  if (out.normal.empty()) return {};
+  if (out.normal.empty() || !has_own_normals) return {};
   const Side side = all_sides[pole.to % 4];
   const bool is_point = set.collapsed[pole.to / 4].has(edge_of(side));
   const Result<BezierPatch> patch =
@@ -63,7 +64,7 @@ Status write_welded(const VertexCopies& weld, const CertifiedPlan& plan, const P
     if (is_due(corner)) copy_positions(out, plan.ring_vertex(corner.from, 0), plan.ring_vertex(corner.to, 0));
   for (const VertexCopies::Corner& pole : weld.poles)
     if (is_due(pole))
-      if (Status status = write_pole(pole, plan, set, out); !status.ok()) return status;
+      if (Status status = write_pole(pole, plan, set, out, is_written(pole.to / 4)); !status.ok()) return status;
   return {};
 }
 
