@@ -30,9 +30,13 @@ namespace {
 constexpr double cell_share = 0.6, sliver_share = 0.25;
 constexpr double band_share = 1.5;  // a bound of most triangles of the band over that of cells
 constexpr int max_attempts = 24;
-// A patch ends the plan at some times the limit on all triangles, so that messages can say how many a mesh takes.
-constexpr std::uint64_t max_of_patch = std::uint64_t{1} << 31;
 constexpr std::size_t cuts_per_task = 4, rooms_per_task = 64;
+
+/// The largest number of triangles of a patch, and of all cut ones, at which a plan goes on: some times the limit, so
+/// that messages can say how many a mesh takes that exceeds it by less.
+std::uint64_t max_while_cutting(std::uint64_t max_triangles) {
+  return 8 * std::min(max_triangles, std::uint64_t{1} << 28);
+}
 
 }  // namespace
 
@@ -84,7 +88,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, double 
   room.limits.in_cells = options_.angle || options_.camera;
   room.limits.rounding = {&set_->patches[patch], set_->origin, options_.f64_positions, roundings_[patch]};
   room.limits.domain = set_->sources[patch].domain;
-  room.limits.max_triangles = 8 * std::min(request.max_triangles, max_of_patch / 8);
+  room.limits.max_triangles = max_while_cutting(request.max_triangles);
   room.limits.bend = options_.angle ? *options_.angle / 8 : std::numeric_limits<double>::infinity();
   return room;
 }
@@ -236,7 +240,7 @@ Status CertifiedPlanner::too_many(const Request& request, std::size_t patch) con
 Status CertifiedPlanner::check_triangles(const Request& request, const CertifiedPlan& plan) const {
   std::uint64_t triangles = 0;
   for (const CutPatch& cut : plan.cuts()) triangles += cut.triangles.size();
-  if (triangles <= request.max_triangles) return {};
+  if (triangles <= max_while_cutting(request.max_triangles)) return {};
   return {StatusCode::invalid_argument, wanted(request.tolerance) + " takes more than " + std::to_string(triangles) +
                                             " triangles, the limit is " + std::to_string(request.max_triangles)};
 }
