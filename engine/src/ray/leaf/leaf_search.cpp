@@ -169,12 +169,20 @@ class LeafSearch {
     if (s < infinity) take(slot, nearest, false, from);
   }
 
+  /// Returns the leaf's parameters at a place of a part. A narrowed part may end beyond its leaf by rounding.
+  static NetParameters in_leaf(const SearchBox& box, NetParameters at) {
+    return {std::min(box.u0 + at.u * box.du, 1.0), std::min(box.v0 + at.v * box.dv, 1.0)};
+  }
+  /// Sets the root's place in its patch: within the leaf, since sums round monotonically and the leaf's ends are exact.
+  void place(NetParameters at, LeafRoot& root) const {
+    root.patch = leaf_.patch;
+    root.u = leaf_.u0 + at.u * leaf_.du, root.v = leaf_.v0 + at.v * leaf_.dv;
+  }
+
   /// Whether the loops keep a point of a part.
   bool is_kept(int slot, NetParameters at) const {
-    const SearchBox& box = space_.box(slot);
     LeafRoot point;
-    point.patch = leaf_.patch;
-    point.u = leaf_.u0 + (box.u0 + at.u * box.du) * leaf_.du, point.v = leaf_.v0 + (box.v0 + at.v * box.dv) * leaf_.dv;
+    place(in_leaf(space_.box(slot), at), point);
     return query_.trims->side_of(point) != TrimSide::outside;
   }
 
@@ -232,17 +240,16 @@ class LeafSearch {
 
   bool take(int slot, NetParameters at, bool certified, double from) {
     const SearchBox& box = space_.box(slot);
-    NetParameters in_leaf{box.u0 + at.u * box.du, box.v0 + at.v * box.dv};
-    NetValue f = value(space_.net(0), in_leaf);
+    NetParameters best = in_leaf(box, at);
+    NetValue f = value(space_.net(0), best);
     for (int step = 0; step < 3 && certified; ++step) {  // the leaf's own net has the least rounding
-      const NetParameters next = bounded_step(f, in_leaf);
+      const NetParameters next = bounded_step(f, best);
       const NetValue there = value(space_.net(0), next);
       if (!(there.residual() < f.residual())) break;
-      in_leaf = next, f = there;
+      best = next, f = there;
     }
     LeafRoot root;
-    root.patch = leaf_.patch;
-    root.u = leaf_.u0 + in_leaf.u * leaf_.du, root.v = leaf_.v0 + in_leaf.v * leaf_.dv;
+    place(best, root);
     root.s = f.s();
     root.residual = f.residual();
     root.noise = search_rounding(shape_.m(), shape_.n(), leaf_.halvings(), 0);
