@@ -159,6 +159,13 @@ struct RayQuery {
     return add(kept, t);
   }
 
+  /// Returns whether root `a`, at its t, comes before `b`. Of roots at equal t it is the point of an edge, then that of
+  /// the first patch, whichever was searched first: s is finer than t, and would tell the scene of a whole model from
+  /// those of its parts. Two pieces of a patch may find one root with other last digits.
+  static bool precedes(const LeafRoot& a, double t_a, const LeafRoot& b, double t_b) {
+    return t_a < t_b || (t_a == t_b && wins_at_equal_t(a, b));
+  }
+
   /// Takes the point of an edge that the line passes within its gap. Where all roots are wanted it is none.
   void take_seam(const LeafRoot& root, double gap) {
     seam_gap = std::max(seam_gap, gap);
@@ -166,12 +173,6 @@ struct RayQuery {
   }
 
  private:
-  /// Returns whether a root is the closest so far. Of roots at equal t it is the point of an edge, then that of the first
-  /// patch, whichever was searched first: s is finer than t, and would tell the scene of a whole model from those of its
-  /// parts. Two pieces of a patch may find one root with other last digits.
-  bool comes_first(const LeafRoot& root, double t) const {
-    return t < best_t || (t == best_t && wins_at_equal_t(root, best));
-  }
   [[gnu::noinline]] static bool wins_at_equal_t(const LeafRoot& a, const LeafRoot& b) {
     if (a.is_seam != b.is_seam) return a.is_seam;
     const auto order = [](const LeafRoot& r) {
@@ -188,7 +189,7 @@ struct RayQuery {
       } catch (...) {  // called from Embree, which cannot handle exceptions
         overflow = true;
       }
-    } else if (comes_first(root, t)) {
+    } else if (precedes(root, t, best, best_t)) {
       if (filter != nullptr && !counts(root)) return true;
       best = root;
       best_t = t;

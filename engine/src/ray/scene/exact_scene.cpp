@@ -65,6 +65,7 @@ class ExactScene final : public PatchScene, private ExactSource {
  private:
   bool fresh() const override { return Impl::fresh(); }
   const LeafTracer& tracer() const override { return scene_.tracer(); }
+  Box3 reach() const override { return {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)}; }
   RayLine line(const Ray& ray) const override { return line_of(ray, frame_, scene_box_); }
   RayLine line(const Ray& ray, const Placement& placement) const override {
     return line_of(ray, placement, frame_, scene_box_);
@@ -120,7 +121,6 @@ class ExactScene final : public PatchScene, private ExactSource {
   int updates_ = 0;  // since the last build
 };
 
-/// Measures the boxes of all current pieces.
 void ExactScene::measure() {
   scene_box_ = {};
   const std::span<const Box3> boxes = nets_.boxes();

@@ -1,5 +1,5 @@
 #pragma once
-// Access to an exact scene for Embree's callbacks in the user's scenes, and for scenes of instances.
+// Access to an exact scene for the user's Embree scenes, and for scenes of instances.
 
 #include <algorithm>
 #include <cstdint>
@@ -23,6 +23,8 @@ class ExactSource {
   virtual ~ExactSource() = default;
   virtual bool fresh() const = 0;
   virtual const LeafTracer& tracer() const = 0;
+  /// Returns the box of all possible hits, in the model's coordinates.
+  virtual Box3 reach() const = 0;
   /// Returns the line of a valid ray in the model's coordinates.
   virtual RayLine line(const Ray& ray) const = 0;
   virtual RayLine line(const Ray& ray, const Placement& placement) const = 0;

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
+#include "ray/embree/embree_scene.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
@@ -20,32 +21,23 @@ namespace {
 constexpr double smallest_size = 1e-15;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+// Embree tests boxes of user geometries with a ray from `origin` in float, in robust scenes as in others. A side of a
+// box is then off by at most 6 * 2^-24 (|side| + |origin|): the reciprocal of the direction rounds by 4 units of 2^-24,
+// the products with side and origin by one each, the origin's with its full size. So the box is found for origins
+// within 40,000 sizes of the scene, and farther away if it lies far from zero.
+constexpr double pad_of_size = 1.0 / 64, pad_of_place = 2e-6;
+
 const ExactSource& source_of(void* user_data) { return *static_cast<const ExactSource*>(user_data); }
 
-/// Returns the box of a leaf or a tube in the model's coordinates, with all points that count as hit and every rounding.
+/// Returns the box of the geometry's one primitive: the scene, whose own tree holds the pieces of patches.
 void bounds(const RTCBoundsFunctionArguments* arguments) {
-  const LeafTracer& tracer = source_of(arguments->geometryUserPtr).tracer();
-  const unsigned k = arguments->primID;
-  const bool is_tube = k >= tracer.first_tube;
-  if (!is_tube && tracer.use_of(k) == PatchUse::out) {
-    *arguments->bounds_o = {infinity, infinity, infinity, 0, -infinity, -infinity, -infinity, 0};
-    return;
-  }
-  const SceneFrame& frame = tracer.nets->frame();
-  Vec3 low{-1, -1, -1}, high{1, 1, 1};  // holds every leaf
-  try {
-    const Box3 box = is_tube ? tracer.tubes->box(k - tracer.first_tube) : tracer.nets->box(*tracer.set, k);
-    low = box.lower, high = box.upper;
-  } catch (...) {  // no memory; Embree cannot handle exceptions
-  }
-  const double pad = (is_tube ? 0 : tracer.tolerance_of(tracer.nets->leaves()[k])) + 1e-12;
-  low = frame.to_model(low - Vec3{pad, pad, pad}), high = frame.to_model(high + Vec3{pad, pad, pad});
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(max_abs(low), max_abs(high));
-  const auto below = [&](double x) { return std::nextafter(static_cast<float>(x - rounding), -infinity); };
-  const auto above = [&](double x) { return std::nextafter(static_cast<float>(x + rounding), infinity); };
+  const Box3 box = source_of(arguments->geometryUserPtr).reach();
+  const double pad = pad_of_size * box.diagonal() + pad_of_place * std::max(max_abs(box.lower), max_abs(box.upper));
+  const auto narrow = [](double x) { return static_cast<float>(std::clamp(x, -max_ray_component, max_ray_component)); };
   RTCBounds& out = *arguments->bounds_o;
-  out.lower_x = below(low.x), out.lower_y = below(low.y), out.lower_z = below(low.z);
-  out.upper_x = above(high.x), out.upper_y = above(high.y), out.upper_z = above(high.z);
+  out.lower_x = narrow(box.lower.x - pad), out.upper_x = narrow(box.upper.x + pad);
+  out.lower_y = narrow(box.lower.y - pad), out.upper_y = narrow(box.upper.y + pad);
+  out.lower_z = narrow(box.lower.z - pad), out.upper_z = narrow(box.upper.z + pad);
 }
 
 Ray ray_of(RTCRayN* rays, unsigned count, unsigned k) {
@@ -56,65 +48,61 @@ Ray ray_of(RTCRayN* rays, unsigned count, unsigned k) {
   return ray;
 }
 
-/// One call of Embree for one leaf, with RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments.
-template <class Arguments>
-class LeafCall {
+/// Accepts the roots behind those that filters of Embree have rejected.
+class RootsBehind final : public RootFilter {
  public:
-  LeafCall(const Arguments* arguments, RTCRayN* rays)
-      : arguments_(arguments),
-        rays_(rays),
-        source_(source_of(arguments->geometryUserPtr)),
-        space_(source_.tracer().nets->largest()) {}
-
-  /// Returns whether there is anything to hit.
-  static bool is_open(const Arguments* arguments) {
-    const ExactSource& source = source_of(arguments->geometryUserPtr);
-    return source.fresh() && arguments->primID < source.tracer().primitives();
+  void pass(const RayQuery& query) { last_ = query.best, t_ = query.best_t; }
+  HitVerdict decide(const RayQuery& query, const LeafRoot& root) const noexcept override {
+    const bool is_same = root.patch == last_.patch && root.is_seam == last_.is_seam && same_place(root, last_);
+    const bool is_behind = !is_same && RayQuery::precedes(last_, t_, root, query.line.t_at(root.s));
+    return is_behind ? HitVerdict::accept : HitVerdict::reject;
   }
 
-  /// Finds the leaf's nearest root on one of the rays that no filter rejects, as a hit; the ray then ends there.
-  bool meet(unsigned k, RTCHit& hit) {
+ private:
+  LeafRoot last_;
+  double t_ = 0;
+};
+
+/// One call of Embree, with RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments.
+template <class Arguments>
+class SceneCall {
+ public:
+  SceneCall(const Arguments* arguments, RTCRayN* rays)
+      : arguments_(arguments), rays_(rays), source_(source_of(arguments->geometryUserPtr)) {}
+
+  /// Finds the nearest root on one of the rays that no filter rejects, as a hit; the ray then ends there.
+  bool meet(unsigned k, RTCHit& hit) const {
     const Ray ray = ray_of(rays_, arguments_->N, k);
     if (!is_valid(ray)) return false;
     const RayLine line = source_.line(ray);
     if (line.empty) return false;
-    RayQuery query(ray, line, RootsWanted::closest);
-    search(query);
-    if (!query.found) return false;
-    if (accept(k, line, query.best, hit)) return true;
-    return meet_behind(k, ray, line, query.best, hit);
+    RootsBehind behind;
+    for (const RootFilter* filter = nullptr;; filter = &behind) {
+      RayQuery query(ray, line, RootsWanted::closest);
+      query.filter = filter;
+      trace(query);
+      if (!query.found || accept(k, query, hit)) return query.found;
+      behind.pass(query);
+    }
   }
 
  private:
-  void search(RayQuery& query) {
-    kernel::RayProbe probe = probe_of(query);
-    source_.tracer().search(arguments_->primID, probe, query, space_);
-  }
-
-  /// Continues after a filter has rejected the first root.
-  bool meet_behind(unsigned k, const Ray& ray, const RayLine& line, LeafRoot before, RTCHit& hit) {
-    RayQuery query(ray, line, RootsWanted::all);
-    search(query);
-    before.certified = false;  // it comes from a query for the closest root, which does not set its side
-    std::sort(query.roots.begin(), query.roots.end(), [](const LeafRoot& a, const LeafRoot& b) { return a.s < b.s; });
-    for (const LeafRoot& root : query.roots) {
-      if (same_place(root, before)) continue;
-      if (accept(k, line, root, hit)) return true;
-      before = root;
-    }
-    return false;
+  void trace(RayQuery& query) const {
+    const FlushDenormals flush;
+    source_.trace(query);
   }
 
   /// Fills the hit and asks the filters.
-  bool accept(unsigned k, const RayLine& line, const LeafRoot& root, RTCHit& hit) {
-    const Hit found = source_.hit_at(line, root);
+  bool accept(unsigned k, const RayQuery& query, RTCHit& hit) const {
+    const Hit found = source_.hit_at(query.line, query.best);
+    const auto t = static_cast<float>(query.t_of(query.best));
     hit.Ng_x = static_cast<float>(found.normal.x), hit.Ng_y = static_cast<float>(found.normal.y);
     hit.Ng_z = static_cast<float>(found.normal.z);
     hit.u = static_cast<float>(found.patch_u), hit.v = static_cast<float>(found.patch_v);
     hit.primID = found.patch, hit.geomID = arguments_->geomID;
     set_instances(*arguments_->context, hit);
     RTCRay ray = rtcGetRayFromRayN(rays_, arguments_->N, k);
-    ray.tfar = static_cast<float>(found.t);
+    ray.tfar = t;
     int valid = -1;
     RTCFilterFunctionNArguments filter;
     filter.valid = &valid;
@@ -125,20 +113,18 @@ class LeafCall {
     filter.N = 1;
     filter_hit(arguments_, &filter);
     if (valid == 0) return false;
-    RTCRayN_tfar(rays_, arguments_->N, k) = static_cast<float>(found.t);
+    RTCRayN_tfar(rays_, arguments_->N, k) = t;
     return true;
   }
 
   const Arguments* arguments_;
   RTCRayN* rays_;
   const ExactSource& source_;
-  SearchSpace space_;
 };
 
-void intersect_leaf(const RTCIntersectFunctionNArguments* arguments) {
-  using Call = LeafCall<RTCIntersectFunctionNArguments>;
-  if (!Call::is_open(arguments)) return;
-  Call call(arguments, RTCRayHitN_RayN(arguments->rayhit, arguments->N));
+void intersect_scene(const RTCIntersectFunctionNArguments* arguments) {
+  if (!source_of(arguments->geometryUserPtr).fresh()) return;
+  const SceneCall call(arguments, RTCRayHitN_RayN(arguments->rayhit, arguments->N));
   for (unsigned k = 0; k < arguments->N; ++k) {
     RTCHit hit;
     if (arguments->valid[k] != 0 && call.meet(k, hit))
@@ -146,10 +132,9 @@ void intersect_leaf(const RTCIntersectFunctionNArguments* arguments) {
   }
 }
 
-void occlude_leaf(const RTCOccludedFunctionNArguments* arguments) {
-  using Call = LeafCall<RTCOccludedFunctionNArguments>;
-  if (!Call::is_open(arguments)) return;
-  Call call(arguments, arguments->ray);
+void occlude_scene(const RTCOccludedFunctionNArguments* arguments) {
+  if (!source_of(arguments->geometryUserPtr).fresh()) return;
+  const SceneCall call(arguments, arguments->ray);
   for (unsigned k = 0; k < arguments->N; ++k) {
     RTCHit hit;
     if (arguments->valid[k] != 0 && call.meet(k, hit)) RTCRayN_tfar(arguments->ray, arguments->N, k) = -infinity;
@@ -174,8 +159,8 @@ Result<const ExactSource*> usable_source(const RayScene& scene) {
   return source;
 }
 
-void commit_geometry(const ExactSource& source, RTCGeometry geometry) {
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(source.tracer().primitives()));
+void commit_geometry(RTCGeometry geometry) {
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
   rtcCommitGeometry(geometry);
 }
 
@@ -190,12 +175,12 @@ Result<RTCGeometry> make_embree_geometry(const RayScene& scene, RTCDevice device
     if (geometry == nullptr) return Status(StatusCode::internal, "Embree: no geometry could be made");
     rtcSetGeometryUserData(geometry, const_cast<ExactSource*>(*source));
     rtcSetGeometryBoundsFunction(geometry, &bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, &intersect_leaf);
-    rtcSetGeometryOccludedFunction(geometry, &occlude_leaf);
+    rtcSetGeometryIntersectFunction(geometry, &intersect_scene);
+    rtcSetGeometryOccludedFunction(geometry, &occlude_scene);
 #if RTC_VERSION_MAJOR >= 4
     rtcSetGeometryEnableFilterFunctionFromArguments(geometry, true);
 #endif
-    commit_geometry(**source, geometry);
+    commit_geometry(geometry);
     return geometry;
   });
 }
@@ -207,7 +192,7 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry) {
     if (!source) return source.status();
     if (rtcGetGeometryUserData(geometry) != *source)
       return Status(StatusCode::invalid_argument, "the Embree geometry was not made of this ray scene");
-    commit_geometry(**source, geometry);
+    commit_geometry(geometry);
     return {};
   });
 }
