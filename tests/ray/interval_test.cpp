@@ -2,7 +2,10 @@
 
 #include <cmath>
 
-#include "ray_support.h"
+#include "ray/gaping_shapes.h"
+#include "ray/lattice_body.h"
+#include "support/seam_rays.h"
+#include "support/solid_rays.h"
 
 namespace tessera::test {
 namespace {
@@ -119,6 +122,77 @@ TEST_F(Interval, SingleRaysAgreeWithBatches) {
     ASSERT_EQ(one.kind, hits[k].kind);
     if (one.kind != HitKind::hit || one.flags.unrefined || hits[k].flags.unrefined) continue;
     EXPECT_NEAR(one.t, hits[k].t, 1e-9);
+  }
+}
+
+/// Counts hits that rays with tfar = t, the hit's own t, do not have again.
+std::size_t count_lost(const RayScene& scene, const std::vector<Ray>& rays) {
+  const std::vector<Hit> hits = closest(scene, rays);
+  std::size_t met = 0, lost = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    if (hits[k].kind != HitKind::hit) continue;
+    ++met;
+    Ray until = rays[k];
+    until.tfar = hits[k].t;
+    const Hit again = scene.closest(until);
+    const bool is_same = again.t == hits[k].t || hits[k].flags.uncertified;
+    lost += again.kind != HitKind::hit || again.t > hits[k].t || !is_same || !scene.occluded(until);
+  }
+  EXPECT_GT(met, rays.size() / 2);
+  return lost;
+}
+
+TEST(ExactInterval, RaysThatEndAtAHitHaveItAgain) {
+  Random random(26);
+  for (const std::vector<BezierPatch>& patches :
+       {sphere(), closed_body(), Torus(5).patches(true), lattice_body({3, 3, 0.2}, random)}) {
+    const PatchSet set = set_of(patches);
+    const RayScene scene = value_of(RayScene::make(set));
+    const double size = set.box().diagonal();
+    std::vector<Ray> rays;
+    for (int k = 0; k < 1000; ++k) {
+      rays.push_back(rays::at_surface(patches, random, size * uniform(random, 0.5, 2)));
+      rays.push_back(through(beside_seam(patches, random, 1e-3), random, size));
+      rays.push_back(rays::at_silhouette(patches, random, size));
+    }
+    EXPECT_EQ(count_lost(scene, rays), 0u);
+  }
+}
+
+// Edges of shapes are hits at the nearest point of a loop, wherever that point's passage goes on behind the ray's end.
+TEST(ExactInterval, RaysThatEndAtAnEdgeHaveItAgain) {
+  Random random(27);
+  for (const Shape& shape : {FrayedCube({1e-3}, 7).shape(), gaping_plate(1e-3), half_ball(1e-3)}) {
+    const PatchSet set = value_of(make_patch_set(shape));
+    const RayScene scene = value_of(RayScene::make(set));
+    const EdgeTargets targets(shape);
+    std::vector<Ray> rays;
+    for (int k = 0; k < 5000; ++k) {
+      const Vec3 eye = set.box().centre() + 3 * set.box().diagonal() * rays::unit_vector(random);
+      rays.push_back(ray(eye, targets.draw(random) + 1e-3 * uniform_vector(random, -1, 1) - eye));
+    }
+    EXPECT_EQ(count_lost(scene, rays), 0u);
+    const RayInstance instances[] = {{&scene, Affine::translated({1, 2, 3})}};
+    const RayScene placed = value_of(RayScene::make(instances));
+    for (Ray& moved : rays) moved.origin += Vec3{1, 2, 3};
+    EXPECT_EQ(count_lost(placed, rays), 0u);
+  }
+}
+
+// In grid mode t rounds by where the segment of the ray begins. Both ends are inclusive within that.
+TEST_F(Interval, BeginsAtTheHit) {
+  Random random(28);
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 target = normalized(random_direction(random));
+    Ray one = ray(3 * target + random_direction(random), {});
+    one.direction = target - one.origin;
+    const Hit first = scene_.closest(one);
+    ASSERT_EQ(first.kind, HitKind::hit);
+    one.tnear = first.t;
+    const Hit again = scene_.closest(one);
+    ASSERT_EQ(again.kind, HitKind::hit);
+    EXPECT_GE(again.t, one.tnear);
+    EXPECT_NEAR(again.t, first.t, 1e-12);
   }
 }
 

@@ -56,7 +56,8 @@ RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margi
   clip(from.y, d.y, box.lower.y, box.upper.y, near, far);
   clip(from.z, d.z, box.lower.z, box.upper.z, near, far);
   // A far origin rounds by its distance; a miss of the box by that much counts as a hit.
-  const double slack = margin + 4 * std::numeric_limits<double>::epsilon() * (max_abs(from) + std::abs(near));
+  out.slack = 4 * std::numeric_limits<double>::epsilon() * (max_abs(from) + std::abs(near));
+  const double slack = margin + out.slack;
   if (!std::isfinite(near) || !(near <= far + slack)) return out;
   out.offset = near - slack;
   out.start = from + out.offset * d;

@@ -18,6 +18,7 @@ struct RaySegment {
   double scale = 0;   ///< the length of the given direction: t = (offset + s) / scale
   double offset = 0;  ///< arc length from the ray's origin to start; may be negative
   double reach = 0;
+  double slack = 0;   ///< bound on the rounding of an s, by where the segment starts
   bool empty = true;  ///< misses the box
 
   double t_at(double s) const { return (offset + s) / scale; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "ray/tube/edge_tubes.h"
@@ -10,7 +11,8 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_points = 4096;  // of curves, for one ray and one tube
-constexpr double fine = 1e-3;     // share of the gap up to which a curve may leave its chord
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double fine = 1e-3;  // share of the gap up to which a curve may leave its chord
 
 /// A part of a chord's curve: it lies within `off` of the line between its ends.
 template <class Point>
@@ -33,7 +35,8 @@ class TubeWalk {
   TubeWalk(const SetView& set, const SceneFrame& frame, double gap, const Near& near)
       : set_(set), frame_(frame), gap_(gap), near_(near) {}
 
-  /// Calls found(place, point) for parts of the chord's curve within the gap.
+  /// Calls found(point, goes_on) for parts of the chord's curve within the gap. `goes_on`: the part begins where the
+  /// last one ended, in this chord or the one before it.
   template <class Found>
   void walk(const TubeChord& chord, const Found& found) {
     visit(chord, {chord.from, chord.to, near_.see(chord.start), near_.see(chord.end), chord.off}, found);
@@ -48,7 +51,10 @@ class TubeWalk {
     const double x = is_fine ? (1 - at->share) * part.from + at->share * part.to : (part.from + part.to) / 2;
     const LoopPoint point = loop_point(set_, frame_, *chord.piece, chord.patch, x);
     if (is_fine || ++points_ > max_points) {
-      if (near_.distance(point.position) <= gap_ || !is_fine) found(point);
+      if (near_.distance(point.position) <= gap_ || !is_fine) {
+        found(point, goes_on(chord, part.from));
+        last_ = &chord, last_to_ = part.to;
+      }
       return;
     }
     const Point middle = near_.see(point.position);
@@ -56,11 +62,18 @@ class TubeWalk {
     visit(chord, {x, part.to, middle, part.end, part.off / 4}, found);
   }
 
+  bool goes_on(const TubeChord& chord, double from) const {
+    return last_ == &chord ? last_to_ == from
+                           : last_ != nullptr && last_ + 1 == &chord && last_to_ == last_->to && from == chord.from;
+  }
+
   const SetView& set_;
   const SceneFrame& frame_;
   double gap_;
   const Near& near_;
   int points_ = 0;
+  const TubeChord* last_ = nullptr;  ///< the chord of the last part within the gap
+  double last_to_ = 0;               ///< where that part ended
 };
 
 struct Nearest {
@@ -124,31 +137,33 @@ void EdgeTubes::search(unsigned index, RayQuery& query) const {
   const std::span<const TubeChord> chords = std::span(chords_).subspan(tube.first, tube.count);
   const RayLine& line = query.line;
   ++query.steps;
-  LeafRoot best;
-  bool found = false;
+  // A passage is a run of neighbouring parts within the gap. Its nearest point stands for it, and the first of these
+  // along the line counts. A line that ends at that point has the same one, whatever parts lie behind.
+  LeafRoot first, passage;
+  first.s = passage.s = infinity;
   const NearLine near(line);
   TubeWalk walk(*set_, frame_, tube.gap, near);
   for (const TubeChord& chord : chords)
-    walk.walk(chord, [&](const LoopPoint& point) {
+    walk.walk(chord, [&](const LoopPoint& point, bool goes_on) {
       const SeenPoint at = near.see(point.position);
       const double residual = std::hypot(at.x, at.y);
-      // The nearest point of one passage counts, and the first passage of several.
-      const bool is_better = std::abs(at.s - best.s) > 2 * tube.gap ? at.s < best.s : residual < best.residual;
-      if (found && !is_better) return;
-      found = true;
-      best.patch = point.patch, best.u = point.u, best.v = point.v;
-      best.s = at.s, best.residual = residual;
+      if (goes_on && !(residual < passage.residual)) return;
+      if (!goes_on && passage.s < first.s) first = passage;
+      passage.patch = point.patch, passage.u = point.u, passage.v = point.v;
+      passage.s = at.s, passage.residual = residual;
     });
-  if (!found || best.s > line.far) return;
+  if (passage.s < first.s) first = passage;
+  // By t as it is reported: line.far is rounded.
+  if (first.s == infinity || line.t_at(first.s) > query.ray.tfar) return;
   const NearPoint origin(line.start + line.near * line.direction);
   TubeWalk from_origin(*set_, frame_, tube.gap, origin);
   bool holds_origin = false;
   for (const TubeChord& chord : chords)
-    if (!holds_origin) from_origin.walk(chord, [&](const LoopPoint&) { holds_origin = true; });
+    if (!holds_origin) from_origin.walk(chord, [&](const LoopPoint&, bool) { holds_origin = true; });
   if (holds_origin) return;
-  best.certified = best.is_seam = true;
-  best.s = std::max(best.s, line.near);
-  query.take_seam(best, tube.gap);
+  first.certified = first.is_seam = true;
+  first.s = std::max(first.s, line.near);
+  query.take_seam(first, tube.gap);
 }
 
 }  // namespace tessera::inline abi_0_1
