@@ -81,6 +81,37 @@ TEST(EdgeTubes, GapsAreTheDistancesOfFaces) {
   }
 }
 
+// Faces that run along an edge at different paces are no farther apart for it.
+TEST(EdgeTubes, GapsDoNotDependOnPaces) {
+  const double fray = 1e-4;
+  const Shape shape = FrayedCube({.size = fray, .pace = 0.1}, 9).shape();
+  const PatchSet set = value_of(make_patch_set(shape));
+  const RayScene scene = value_of(RayScene::make(set));
+  const std::vector<double> at_equal_parameters = value_of(edge_gaps(shape, 65));
+  EXPECT_GT(*std::ranges::max_element(at_equal_parameters), 100 * fray);
+  EXPECT_LE(widest(scene), 4 * fray);
+  expect_tight(shape);
+}
+
+// Curves that leave their planes' domains are cut off there. Lines along the borders of domains stand for them, also
+// around corners.
+TEST(EdgeTubes, CurvesThatLeaveTheirDomains) {
+  for (const Fray& fray : {Fray{.size = 5e-4, .room = 0}, Fray{.size = 3e-4, .pace = 0.1, .room = 0}}) {
+    SCOPED_TRACE(fray.size);
+    const Shape shape = FrayedCube(fray, 10).shape();
+    const PatchSet set = value_of(make_patch_set(shape));
+    const RayScene scene = value_of(RayScene::make(set));
+    EXPECT_LE(widest(scene), 4 * fray.size);
+    SolidRays solid(shape, scene, 11);
+    EXPECT_GT(solid.inside_count(), 20u);
+    solid.cast(20000);
+    EXPECT_GT(solid.tally().seams, 2000u);
+    EXPECT_EQ(solid.tally().leaks, 0u);
+    EXPECT_EQ(solid.tally().odd, 0u);
+    EXPECT_EQ(solid.tally().seam_odd, 0u);
+  }
+}
+
 // Borders of whole patches with equal control points need no tube, nor does a set without edges.
 TEST(EdgeTubes, SharedBordersHaveNone) {
   const Shape shape = joined(cube(), 1e-6);

@@ -16,6 +16,8 @@ struct Fray {
   double size = 1e-3;         ///< of tilts and of the loops' teeth, at most
   bool open_corners = false;  ///< whether also the curves of one loop end apart
   double cut_off = 0;         ///< how far from the corners curves end; straight lines join them
+  double pace = 0;            ///< how far along an edge its faces are apart at equal parameters, at most
+  double room = 0.1;          ///< how far the planes reach beyond the cube's sides; 0: curves leave their domains
 };
 
 /// A unit cube. Each face is a larger, tilted plane, and its loop has teeth where other faces have other ones.
@@ -52,9 +54,10 @@ class FrayedCube {
   void add_face(int axis, int side) {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
     std::vector<Vec3> points;
-    for (const double u : {-0.1, 1.1})
-      for (const double v : {-0.1, 1.1}) points.push_back((side + off()) * unit(axis) + u * unit(b) + v * unit(c));
-    const std::vector<double> knots{-0.1, -0.1, 1.1, 1.1};
+    const double low = -fray_.room, high = 1 + fray_.room;
+    for (const double u : {low, high})
+      for (const double v : {low, high}) points.push_back((side + off()) * unit(axis) + u * unit(b) + v * unit(c));
+    const std::vector<double> knots{low, low, high, high};
     TrimLoop loop;
     const std::array<Vec3, 4> around{Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     std::array<Vec3, 4> moved;
@@ -77,9 +80,10 @@ class FrayedCube {
     const Vec3 from = start + fray_.cut_off * (end - start), to = end - fray_.cut_off * (end - start);
     std::vector<Vec3> points{from};
     std::vector<double> knots{0, 0};
+    const double pace = fray_.pace > 0 ? uniform(random_, -2 * fray_.pace, 2 * fray_.pace) : 0;
     for (int k = 1; k < count; ++k) {
-      const double x = double(k) / count;
-      points.push_back((1 - x) * from + x * to + plane_off());
+      const double x = double(k) / count, at = x + pace * x * (1 - x);
+      points.push_back((1 - at) * from + at * to + plane_off());
       knots.push_back(x);
     }
     points.push_back(to);

@@ -1,6 +1,7 @@
 #pragma once
 // The curves that faces have along the edges of shapes, in the coordinates of a ray scene.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,17 +26,29 @@ struct LoopPoint {
 LoopPoint loop_point(const SetView& set, const SceneFrame& frame, const TrimPiece& piece, std::uint32_t patch,
                      double x);
 
-/// A piece of a face's loop along an edge, on one patch.
+/// A piece of a face's loop along an edge, on one patch; or a part of a line that closes a gap in the loop there.
 struct EdgeStretch {
   const TrimPiece* piece = nullptr;
-  CurveAlongEdge along;
-  std::uint32_t patch = 0;
-  double from = 0, to = 0;  ///< the edge's parameters where the piece starts and ends
+  CurveAlongEdge along;  ///< of a line: without an edge
+  std::uint32_t patch = 0, face = 0;
+  double from = 0, to = 0;    ///< the edge's parameters where the stretch starts and ends
+  double begin = 0, end = 1;  ///< the places on the piece, 0 to 1, there
   double low() const { return std::min(from, to); }
   double high() const { return std::max(from, to); }
+  /// Returns the place on the piece after a share, 0 to 1, of the stretch.
+  double place(double share) const { return (1 - share) * begin + share * end; }
+  ParameterPoint first_point() const { return begin < end ? piece->start() : piece->end(); }
+  ParameterPoint last_point() const { return begin < end ? piece->end() : piece->start(); }
+  ParameterPoint low_point() const { return from <= to ? first_point() : last_point(); }
+  ParameterPoint high_point() const { return from <= to ? last_point() : first_point(); }
+  bool is_line() const { return along.coedge == nullptr; }
 };
 
 /// The curve of one face along an edge: stretches by growing parameters of the edge.
+///
+/// A curve of a loop that leaves its surface's domain is cut off there, and lines along the domain's border close the
+/// gap. They are stretches of the curve as well. A line from one edge to the next, around a vertex, is divided at its
+/// point nearest to the vertex.
 using EdgeCurve = std::vector<EdgeStretch>;
 
 /// Whether two parameters of an edge are one.
@@ -50,8 +63,7 @@ struct VertexLine {
 /// Lists the curves along edges. It refers to the set.
 class EdgeCurves {
  public:
-  EdgeCurves(const SetView& set, const SceneFrame& frame)
-      : set_(&set), frame_(frame), runs_(set.impl()), edges_(set.impl().edges.get()) {}
+  EdgeCurves(const SetView& set, const SceneFrame& frame);
 
   std::size_t edge_count() const { return edges_->edges.size(); }
   const PatchEdges::Edge& edge(std::size_t k) const { return edges_->edges[k]; }
@@ -67,6 +79,7 @@ class EdgeCurves {
   bool has_marked(std::size_t edge, const std::vector<bool>& marks) const;
   /// Returns the point of a stretch at a parameter of the edge within it.
   LoopPoint at(const EdgeStretch& stretch, double s) const;
+  /// Returns the point at a place x, begin to end, of a stretch.
   LoopPoint at_place(const EdgeStretch& stretch, double x) const {
     return loop_point(*set_, frame_, *stretch.piece, stretch.patch, x);
   }
@@ -74,14 +87,31 @@ class EdgeCurves {
   double parameter(const EdgeStretch& stretch, double x) const;
   /// Returns the point of a curve at a parameter of the edge, or at its nearest end.
   LoopPoint at(const EdgeCurve& curve, double s) const;
+  /// Returns the stretch of a curve that has a parameter of the edge; null if the curve has a gap there.
+  static const EdgeStretch* stretch_at(const EdgeCurve& curve, const PatchEdges::Edge& edge, double s);
   /// Lists the lines that close gaps between the curves of loops.
   std::vector<VertexLine> vertex_lines() const;
 
  private:
+  /// Lines that follow each other and close one gap of a face's loop, as stretches without parameters.
+  using Bridge = std::vector<EdgeStretch>;
+
+  void find_bridges();
+  static Bridge turned(Bridge bridge);
+  std::vector<const TrimPiece*> touching(std::uint32_t face, const ParameterPoint& point) const;
+  /// Returns the edge's vertex where a piece along it starts or ends; no_id if that is elsewhere.
+  std::uint32_t vertex_at(std::uint32_t face, const TrimPiece& piece, bool at_end) const;
+  Bridge bridge(std::uint32_t face, const ParameterPoint& from, const ParameterPoint* to) const;
+  void close_gaps(const PatchEdges::Edge& edge, std::span<EdgeCurve> curves) const;
+  void add_bridge(Bridge bridge, double from, double to, EdgeCurve& curve) const;
+  Bridge up_to(Bridge bridge, const Vec3& vertex) const;
+  std::optional<Vec3> end_of(const PatchEdges::Edge& edge, std::span<const EdgeCurve> curves, double s) const;
+
   const SetView* set_;
   SceneFrame frame_;
   EdgeRuns runs_;
   const PatchEdges* edges_;
+  std::vector<Bridge> bridges_;  ///< by growing faces
 };
 
 }  // namespace tessera::inline abi_0_1

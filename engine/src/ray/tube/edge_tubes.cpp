@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "parallel/parallel_for.h"
+#include "ray/tube/centre_curve.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -62,31 +64,35 @@ void EdgeTubes::cut(const EdgeStretch& stretch, std::uint32_t index, double from
 }
 
 /// Measures the distances of other faces' points from the first curve: at its own samples, and at theirs.
-void EdgeTubes::measure(std::span<const EdgeCurve> curves, std::span<TubeChord> chords,
+void EdgeTubes::measure(std::size_t edge, std::span<const EdgeCurve> curves, std::span<const TubeChord> chords,
                         std::span<double> measured) const {
   if (chords.empty()) return;
-  std::vector<double> ends;  // parameters of the edge
-  const auto note = [&](double& distance, const LoopPoint& a, const LoopPoint& b) {
-    distance = std::max(distance, length(a.position - b.position) + a.unsure + b.unsure);
+  const PatchEdges::Edge& of = curves_->edge(edge);
+  const CentreCurve centre(*curves_, curves[0], chords);
+  std::ranges::fill(measured, 0.0);
+  const auto note = [&](const LoopPoint& point, double s) {
+    const bool is_end = is_same(of, s, of.range.from) || is_same(of, s, of.range.to);
+    const CentreCurve::Place place = is_end ? centre.at(s) : centre.nearest(point, s);
+    const double distance = place.distance(point);
+    for (const std::size_t k : {place.chord, centre.chord_of(s)}) measured[k] = std::max(measured[k], distance);
   };
-  for (std::size_t k = 0; k < chords.size(); ++k) {
-    const TubeChord& chord = chords[k];
-    const EdgeStretch& stretch = curves[0][chord.stretch];
-    ends.push_back(curves_->parameter(stretch, chord.to));
-    measured[k] = 0;
+  for (std::size_t k = 0; k < chords.size(); ++k)
     for (int n = 0; n <= samples; ++n) {
-      const double x = (1 - share_of(n)) * chord.from + share_of(n) * chord.to, s = curves_->parameter(stretch, x);
-      const LoopPoint own = curves_->at_place(stretch, x);
-      for (const EdgeCurve& other : curves.subspan(1)) note(measured[k], own, curves_->at(other, s));
+      const double x = (1 - share_of(n)) * chords[k].from + share_of(n) * chords[k].to;
+      const double s = curves_->parameter(curves[0][chords[k].stretch], x);
+      for (const EdgeCurve& other : curves.subspan(1)) {
+        if (const EdgeStretch* const stretch = EdgeCurves::stretch_at(other, of, s)) {
+          note(curves_->at(*stretch, s), s);
+        } else {  // a gap that nothing closes: the ends beside it stand for it
+          measured[k] = std::max(measured[k], centre.at(s).distance(curves_->at(other, s)));
+        }
+      }
     }
-  }
   for (const EdgeCurve& other : curves.subspan(1))
     for (const EdgeStretch& stretch : other)
       for (int n = 0; n <= samples; ++n) {
-        const double s = curves_->parameter(stretch, share_of(n));
-        const auto k =
-            std::min(static_cast<std::size_t>(std::ranges::lower_bound(ends, s) - ends.begin()), chords.size() - 1);
-        note(measured[k], curves_->at(curves[0], s), curves_->at_place(stretch, share_of(n)));
+        const double x = stretch.place(share_of(n));
+        note(curves_->at_place(stretch, x), curves_->parameter(stretch, x));
       }
 }
 
@@ -96,7 +102,8 @@ void EdgeTubes::add_ends(std::size_t edge, std::span<const EdgeCurve> curves, st
     for (const bool at_start : {true, false}) {
       const std::uint32_t vertex = at_start ? of.start : of.end;
       const EdgeStretch& stretch = at_start ? curve.front() : curve.back();
-      const double s = at_start ? stretch.low() : stretch.high(), x = (s == stretch.from) ? 0 : 1;
+      const double s = at_start ? stretch.low() : stretch.high();
+      const double x = s == stretch.from ? stretch.begin : stretch.end;
       if (vertex == no_id || !is_same(of, s, at_start ? of.range.from : of.range.to)) continue;
       const LoopPoint point = curves_->at_place(stretch, x);
       ends.push_back(
@@ -111,7 +118,7 @@ void EdgeTubes::add_lines(std::size_t edge, std::span<const EdgeCurve> curves, s
   for (const EdgeCurve& curve : curves)
     for (const EdgeStretch& stretch : curve)
       for (int k = 0; k <= samples; ++k) {
-        const LoopPoint point = curves_->at_place(stretch, share_of(k));
+        const LoopPoint point = curves_->at_place(stretch, stretch.place(share_of(k)));
         ends.push_back({vertex, static_cast<std::uint32_t>(edge), true, false, point.position, point.unsure});
       }
 }
@@ -126,11 +133,12 @@ EdgeTubes::EdgeParts EdgeTubes::parts_of(std::size_t edge) const {
   }
   add_ends(edge, curves, parts.ends);
   for (std::uint32_t k = 0; k < curves[0].size(); ++k) {
-    const bool grows = curves[0][k].from <= curves[0][k].to;
-    cut(curves[0][k], k, grows ? 0 : 1, grows ? 1 : 0, 0, parts.chords);
+    const EdgeStretch& stretch = curves[0][k];
+    const bool grows = stretch.from <= stretch.to;
+    cut(stretch, k, grows ? stretch.begin : stretch.end, grows ? stretch.end : stretch.begin, 0, parts.chords);
   }
   parts.measured.resize(parts.chords.size());
-  measure(curves, parts.chords, parts.measured);
+  measure(edge, curves, parts.chords, parts.measured);
   return parts;
 }
 
@@ -175,19 +183,28 @@ Result<bool> EdgeTubes::update(std::span<const std::uint32_t> patches, const Laz
     touched.push_back(edge);
   }
   const Execution quiet{.cancel = execution.cancel};
+  std::atomic<bool> are_same = true;
   const auto measure_again = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t edge = touched[k];
       const std::vector<EdgeCurve> curves = curves_->of(edge);
       const std::span<TubeChord> chords =
           std::span(chords_).subspan(first_chord_[edge], first_chord_[edge + 1] - first_chord_[edge]);
+      const auto is_there = [&](const TubeChord& chord) {
+        return chord.stretch < curves[0].size() && curves[0][chord.stretch].piece == chord.piece;
+      };
+      if (!std::ranges::all_of(chords, is_there)) {  // lines that close gaps are divided elsewhere
+        are_same = false;
+        continue;
+      }
       for (TubeChord& chord : chords) place(curves[0][chord.stretch], chord);
-      measure(curves, chords, std::span(measured_).subspan(first_chord_[edge], chords.size()));
+      measure(edge, curves, chords, std::span(measured_).subspan(first_chord_[edge], chords.size()));
       ends_[edge].clear();
       curves_->edge(edge).degenerate ? add_lines(edge, curves, ends_[edge]) : add_ends(edge, curves, ends_[edge]);
     }
   };
   if (Status status = parallel_for(touched.size(), edges_per_task, quiet, measure_again); !status.ok()) return status;
+  if (!are_same) return false;
   set_gaps(least);
   return true;
 }
