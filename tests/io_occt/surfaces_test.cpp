@@ -210,13 +210,28 @@ TEST(FaceBox, EndsThatAreKnotsButForRoundingAreKnots) {
     }
 }
 
+/// The narrowest patch at an end that is no knot, as a part of the surface's range.
+double narrowest_end(const BSplineSurface& surface) {
+  const PatchGrid grid = *to_bezier(surface);
+  double narrowest = 1;
+  const auto look = [&](std::span<const double> breaks, std::span<const double> knots) {
+    const double range = breaks.back() - breaks.front();
+    const auto is_knot = [&](double end) { return std::ranges::find(knots, end) != knots.end(); };
+    if (!is_knot(breaks.front())) narrowest = std::min(narrowest, (breaks[1] - breaks[0]) / range);
+    if (!is_knot(breaks.back())) narrowest = std::min(narrowest, (breaks.back() - breaks[breaks.size() - 2]) / range);
+  };
+  look(grid.breaks_u(), surface.knots_u());
+  look(grid.breaks_v(), surface.knots_v());
+  return narrowest;
+}
+
 TEST(FaceBox, NoRealFaceEndsInSlivers) {
   const std::vector<std::filesystem::path> files = real_cad_files();
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   for (const std::filesystem::path& path : files) {
     const Result<Model> model = read_cad(path);
     for (std::size_t k = 0; model && k < model->surfaces.size(); ++k)
-      EXPECT_GT(narrowest_patch(std::get<BSplineSurface>(model->surfaces[k].surface)), 1e-5) << path << ", face " << k;
+      EXPECT_GT(narrowest_end(std::get<BSplineSurface>(model->surfaces[k].surface)), 1e-5) << path << ", face " << k;
   }
 }
 
@@ -348,9 +363,10 @@ TEST(ReadCad, IsWhatThisProcessMakesOfTheFile) {
   const std::vector<std::filesystem::path> files = real_cad_files();
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   for (const std::filesystem::path& path : files) {
+    const Result<Model> read = read_cad(path);
+    if (read.status().code() == StatusCode::internal) continue;  // OpenCASCADE crashes, and would end this process
     const Result<CadFile> file = load_cad(path.string());
-    ASSERT_TRUE(file.ok());
-    const Result<Model> here = model_of(*file, path.string()), read = read_cad(path);
+    const Result<Model> here = file ? model_of(*file, path.string()) : Result<Model>(file.status());
     ASSERT_EQ(here.ok(), read.ok());
     EXPECT_EQ(here.status().message(), read.status().message());
     if (!read) continue;

@@ -3,6 +3,11 @@
 #include <opencascade/BRepTools.hxx>
 #include <opencascade/BRepTools_WireExplorer.hxx>
 #include <opencascade/BRep_Tool.hxx>
+#include <opencascade/BndLib_Add2dCurve.hxx>
+#include <opencascade/Bnd_Box2d.hxx>
+#include <opencascade/Geom2dConvert.hxx>
+#include <opencascade/Geom2d_BSplineCurve.hxx>
+#include <opencascade/Geom2d_TrimmedCurve.hxx>
 #include <opencascade/GeomAdaptor_Surface.hxx>
 #include <opencascade/Geom_BSplineCurve.hxx>
 #include <opencascade/Geom_BSplineSurface.hxx>
@@ -40,6 +45,10 @@ struct Side {
   std::vector<double> knots;  // of the surface, if any
 
   double tolerance() const { return std::clamp(length_tolerance, 1e-9 * (to - from), 1e-4 * (to - from)); }
+  /// See FaceBox; `tolerance` is the length that length_tolerance belongs to.
+  double slack(double tolerance) const {
+    return period == 0 && (from == first || to == last) ? length_tolerance / tolerance : 0;
+  }
   void settle() {
     const double tol = tolerance();
     for (double* const end : {&from, &to}) {
@@ -88,20 +97,52 @@ std::vector<double> knots_v(const GeomAdaptor_Surface& surface) {
   return {};
 }
 
-/// The edges of a wire in their order. If the wire is broken, the edges that the walk along it does not reach come
-/// last.
+/// Whether the edge bounds its face: INTERNAL and EXTERNAL edges lie in a face, or beside it, without cutting it.
+bool is_border(const TopoDS_Shape& edge) {
+  return edge.Orientation() == TopAbs_FORWARD || edge.Orientation() == TopAbs_REVERSED;
+}
+
+/// The edges of a wire that bound the face, in their order. If the wire is broken, the edges that the walk along it
+/// does not reach come last.
 std::vector<TopoDS_Edge> edges_of(const TopoDS_Wire& wire, const TopoDS_Face& face) {
   std::vector<TopoDS_Edge> edges;
-  for (BRepTools_WireExplorer walk(wire, face); walk.More(); walk.Next()) edges.push_back(walk.Current());
+  for (BRepTools_WireExplorer walk(wire, face); walk.More(); walk.Next())
+    if (is_border(walk.Current())) edges.push_back(walk.Current());
   std::vector<TopoDS_Edge> all;
   for (TopoDS_Iterator child(wire); child.More(); child.Next())
-    if (child.Value().ShapeType() == TopAbs_EDGE) all.push_back(TopoDS::Edge(child.Value()));
+    if (child.Value().ShapeType() == TopAbs_EDGE && is_border(child.Value()))
+      all.push_back(TopoDS::Edge(child.Value()));
   if (all.size() == edges.size()) return edges;
   for (const TopoDS_Edge& edge : all) {
     const auto same = [&](const TopoDS_Edge& other) { return edge.IsEqual(other); };
     if (std::none_of(edges.begin(), edges.end(), same)) edges.push_back(edge);
   }
   return edges;
+}
+
+/// Moves the parts of a curve that leave the surface by less than the edge's tolerance onto the side there: the trim
+/// would cut them off, and what is cut off meets no other face along the edge.
+Status keep_on_surface(Curve& curve, const FaceBox& box, double tolerance) {
+  const Domain& d = box.domain;
+  std::vector<Vec3> points(curve.points().begin(), curve.points().end());
+  bool moved = false;
+  const auto keep = [&](double& x, double from, double to, double slack) {
+    const double inside = std::clamp(x, from, to);
+    if (inside == x || std::abs(inside - x) > slack * tolerance) return;
+    x = inside;
+    moved = true;
+  };
+  for (Vec3& p : points) {
+    keep(p.x, d.u0, d.u1, box.slack_u);
+    keep(p.y, d.v0, d.v1, box.slack_v);
+  }
+  if (!moved) return {};
+  Result<Curve> made = curve.is_rational()
+                           ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots(), curve.domain())
+                           : Curve::b_spline(curve.degree(), points, curve.knots(), curve.domain());
+  if (!made) return made.status();
+  curve = *std::move(made);
+  return {};
 }
 
 Status append_edge(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceBox& box,
@@ -113,6 +154,7 @@ Status append_edge(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceB
   const double tolerance = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);
   Result<TrimCurve> made = trim_curve(curve, {from, to}, edge.Orientation() == TopAbs_REVERSED, parameters, tolerance);
   if (!made) return made.status();
+  if (Status status = keep_on_surface(made->curve, box, BRep_Tool::Tolerance(edge)); !status.ok()) return status;
   loop.coedges.push_back(edges.coedge(edge, *made, {from, to}));
   loop.curves.push_back(std::move(made->curve));
   return {};
@@ -147,15 +189,42 @@ bool is_whole_box(const std::vector<TrimLoop>& loops, const FaceBox& box) {
   return std::abs(std::abs(enclosed_area(curves)) - width * height) <= slack;
 }
 
+/// Adds the rectangle that holds an edge's curve. OpenCASCADE's own misses what a periodic spline has behind its seam.
+void add_bounds(const TopoDS_Edge& edge, const TopoDS_Face& face, Bnd_Box2d& box) {
+  double from = 0, to = 0;
+  const handle<Geom2d_Curve> curve = BRep_Tool::CurveOnSurface(edge, face, from, to);
+  if (curve.IsNull()) return;
+  const handle<Geom2d_Curve> whole = bare_curve(curve);
+  if (!whole->IsPeriodic() || !whole->IsKind(STANDARD_TYPE(Geom2d_BSplineCurve)) || !(from < to))
+    return BRepTools::AddUVBounds(face, edge, box);
+  const handle<Geom2d_BSplineCurve> part = Geom2dConvert::CurveToBSplineCurve(new Geom2d_TrimmedCurve(whole, from, to));
+  if (part->IsPeriodic()) part->SetNotPeriodic();
+  BndLib_Add2dCurve::Add(part, 0, box);
+}
+
+/// Sets the ends of the rectangle that holds the face's border; without any, of the surface's own.
+void set_bounds_of_edges(const TopoDS_Face& given, const Geom_Surface& surface, Side& u, Side& v) {
+  const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
+  Bnd_Box2d box;
+  for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
+    if (is_border(edge.Current())) add_bounds(TopoDS::Edge(edge.Current()), face, box);
+  if (box.IsVoid())
+    surface.Bounds(u.from, u.to, v.from, v.to);
+  else
+    box.Get(u.from, v.from, u.to, v.to);
+}
+
 }  // namespace
 
 Result<FaceBox> face_box(const TopoDS_Face& face) {
   TopLoc_Location location;
-  const handle<Geom_Surface> surface = BRep_Tool::Surface(face, location);
+  const handle<Geom_Surface> given = BRep_Tool::Surface(face, location);
+  // Edges may leave the rectangle that trims a surface, and run over the seam of the surface inside.
+  const handle<Geom_Surface> surface = bare_surface(given);
   const GeomAdaptor_Surface adaptor(surface);
   const double tolerance = tolerance_of(face);
   Side u{}, v{};
-  BRepTools::UVBounds(face, u.from, u.to, v.from, v.to);
+  set_bounds_of_edges(face, *given, u, v);
   surface->Bounds(u.first, u.last, v.first, v.last);
   if (surface->IsUPeriodic()) u.period = surface->UPeriod();
   if (surface->IsVPeriodic()) v.period = surface->VPeriod();
@@ -171,7 +240,7 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
     side->settle();
     if (!(side->from < side->to)) return Status(StatusCode::unsupported, "it has no extent");
   }
-  return FaceBox{{u.from, u.to, v.from, v.to}, u.tolerance(), v.tolerance()};
+  return FaceBox{{u.from, u.to, v.from, v.to}, u.tolerance(), v.tolerance(), u.slack(tolerance), v.slack(tolerance)};
 }
 
 Result<FaceLoops> face_loops(const TopoDS_Face& given, const FaceBox& box, const Reparametrization& parameters,
@@ -187,7 +256,10 @@ Result<FaceLoops> face_loops(const TopoDS_Face& given, const FaceBox& box, const
     for (const TopoDS_Edge& edge : edges_of(wire, face))
       if (Status status = append_edge(edge, face, box, parameters, edges, loop); !status.ok()) return status;
     const auto is_nameless = [](const Coedge& coedge) { return coedge.edge == no_id; };
-    if (std::any_of(loop.coedges.begin(), loop.coedges.end(), is_nameless)) loop.coedges.clear();
+    if (std::any_of(loop.coedges.begin(), loop.coedges.end(), is_nameless)) {
+      loop.coedges.clear();
+      out.unshared = true;
+    }
     if (!loop.curves.empty()) out.loops.push_back(std::move(loop));
   }
   out.whole = is_whole_box(out.loops, box);

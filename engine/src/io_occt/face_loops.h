@@ -16,6 +16,8 @@ namespace tessera::inline abi_0_1 {
 struct FaceBox {
   Domain domain;
   double tolerance_u = 0, tolerance_v = 0;
+  /// How far the parameters may move per length, where the box ends with the surface; 0 where it does not.
+  double slack_u = 0, slack_v = 0;
 };
 /// The box of a face. Moves its ends to knots and ends of the surface that are within the tolerance. Errors:
 /// unsupported (unbounded, or no extent). May throw Standard_Failure.
@@ -24,7 +26,8 @@ Result<FaceBox> face_box(const TopoDS_Face& face);
 /// The loops of a face.
 struct FaceLoops {
   std::vector<TrimLoop> loops;
-  bool whole = false;  ///< one loop runs along all sides of the box, and trims nothing
+  bool whole = false;     ///< one loop runs along all sides of the box, and trims nothing
+  bool unshared = false;  ///< a loop names no edges, because a curve of it does not run along its edge
 };
 /// The loops of the face in our parameters, with coedges of `edges`. Errors: unsupported (an edge without a curve in
 /// the parameters), those of trim_curve. May throw Standard_Failure.

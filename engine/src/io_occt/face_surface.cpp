@@ -187,8 +187,9 @@ Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& bo
   return face;
 }
 
-/// The surface inside wrappers that change neither points nor parameters.
-handle<Geom_Surface> bare(handle<Geom_Surface> surface) {
+}  // namespace
+
+handle<Geom_Surface> bare_surface(handle<Geom_Surface> surface) {
   for (;;) {
     handle<Geom_Surface> inner;
     if (const auto trimmed = handle<Geom_RectangularTrimmedSurface>::DownCast(surface)) inner = trimmed->BasisSurface();
@@ -198,10 +199,8 @@ handle<Geom_Surface> bare(handle<Geom_Surface> surface) {
   }
 }
 
-}  // namespace
-
 Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain& box) {
-  const handle<Geom_Surface> surface = bare(given);
+  const handle<Geom_Surface> surface = bare_surface(given);
   if (const auto s = handle<Geom_BSplineSurface>::DownCast(surface)) return from_spline(*s, box);
   if (const auto s = handle<Geom_BezierSurface>::DownCast(surface)) return from_bezier(*s, box);
   if (const auto s = handle<Geom_SurfaceOfRevolution>::DownCast(surface)) return from_revolution(*s, box);

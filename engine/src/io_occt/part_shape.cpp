@@ -15,6 +15,7 @@
 #include "io_occt/face_loops.h"
 #include "io_occt/face_surface.h"
 #include "io_occt/shape_edges.h"
+#include "tessera/topology.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -92,6 +93,7 @@ class PartShape {
   Shape finish(const std::string* above) && {
     std::move(edges_).give_to(shape_);
     if (above) shape_.name = *above;
+    drop_unusable_edges();
     return std::move(shape_);
   }
 
@@ -134,6 +136,9 @@ class PartShape {
                                     " is taken as untrimmed, its loops cannot be read: " + loops.status().message());
       loops = FaceLoops{};
     }
+    if (loops->unshared)
+      shortcomings_.whole.push_back(words(face, name) +
+                                    " is read without shared edges: a curve of its border ends before its edge");
     if (face.Orientation() == TopAbs_REVERSED)
       if (Status status = transpose(made->surface, loops->loops); !status.ok()) return status;
     shortcomings_.fitted += made->fit_error > 0;
@@ -144,13 +149,36 @@ class PartShape {
         shape_.faces.emplace_back(ShapeFace{{name, std::move(made->surface), affine(place.Transformation())}});
     (loops->whole ? out.outline : out.trims) = std::move(loops->loops);
     out.colour = wholes.colour;
+    words_.push_back(words(face, name));
     return {};
+  }
+
+  /// Takes its edges from each face whose loops do not fit them: one edge must not cost the model.
+  void drop_unusable_edges() {
+    if (check_topology(shape_).ok()) return;
+    Shape alone;
+    alone.vertices = shape_.vertices;
+    alone.edges = shape_.edges;
+    for (std::size_t k = 0; k < shape_.faces.size(); ++k) {
+      ShapeFace& face = shape_.faces[k];
+      alone.faces.assign(1, face);
+      const Status status = check_topology(alone);
+      if (status.ok()) continue;
+      for (Shared<std::vector<TrimLoop>>* const shared : {&face.trims, &face.outline}) {
+        std::vector<TrimLoop> loops = **shared;
+        for (TrimLoop& loop : loops) loop.coedges.clear();
+        *shared = std::move(loops);
+      }
+      const std::size_t loop = std::min(status.message().find("loop "), status.message().size());
+      shortcomings_.whole.push_back(words_[k] + " is read without shared edges: " + status.message().substr(loop));
+    }
   }
 
   const CadFile& file_;
   ShapeEdges edges_;
   Shortcomings& shortcomings_;
   Shape shape_;
+  std::vector<std::string> words_;  ///< what messages call each face of the shape
 };
 
 }  // namespace

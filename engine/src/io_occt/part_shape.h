@@ -13,7 +13,7 @@ namespace tessera::inline abi_0_1 {
 /// Parts of a file that the model lacks or changes.
 struct Shortcomings {
   std::vector<std::string> left_out;                ///< faces, one sentence each
-  std::vector<std::string> whole;                   ///< faces whose loops cannot be read
+  std::vector<std::string> whole;                   ///< faces whose loops or edges cannot be read
   StatusCode first_code = StatusCode::parse_error;  ///< of the first face that is left out
   std::size_t faces = 0;                            ///< seen so far
   std::size_t fitted = 0;                           ///< surfaces

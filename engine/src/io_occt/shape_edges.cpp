@@ -176,7 +176,9 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
     if (!near) before = s;
     return near;
   });
-  if (!is_even(f, trim.curve.domain(), out.reversed)) out.parameter = Fractions(f).curve();
+  if (is_even(f, trim.curve.domain(), out.reversed)) return out;
+  out.parameter = Fractions(f).curve();
+  if (!out.parameter) out.edge = no_id;
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <opencascade/Geom2dConvert.hxx>
 #include <opencascade/Geom2d_BSplineCurve.hxx>
+#include <opencascade/Geom2d_BezierCurve.hxx>
 #include <opencascade/Geom2d_Circle.hxx>
 #include <opencascade/Geom2d_Ellipse.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "convert/fit/cubic_fit.h"
 
 namespace tessera::inline abi_0_1 {
@@ -75,12 +77,6 @@ Result<Curve> refitted(const Geom2d_BSplineCurve& spline, const Reparametrizatio
   return std::move(fit).curve();
 }
 
-/// The curve inside wrappers that change neither points nor parameters.
-handle<Geom2d_Curve> bare(handle<Geom2d_Curve> curve) {
-  while (const auto trimmed = handle<Geom2d_TrimmedCurve>::DownCast(curve)) curve = trimmed->BasisCurve();
-  return curve;
-}
-
 handle<Geom2d_BSplineCurve> ellipse_spline(const gp_Ax22d& axes, double major, double minor, const Arcs& arcs) {
   const gp_XY x = major * axes.XDirection().XY(), y = minor * axes.YDirection().XY();
   const std::vector<Arcs::Point> points = arcs.points();
@@ -104,26 +100,45 @@ handle<Geom2d_BSplineCurve> ellipse_spline(const gp_Ax22d& axes, double major, d
 /// A spline of the curve over a range, and how its parameter follows from the curve's.
 struct PlaneSpline {
   handle<Geom2d_BSplineCurve> spline;
-  std::optional<Arcs> arcs;  ///< empty: the parameters differ by `shift` at most
-  double shift = 0;
+  std::optional<Arcs> arcs;  ///< empty: the parameters differ by `shift`
+  double shift = 0;          ///< whole periods of the curve
 
-  double parameter(double t) const { return arcs ? arcs->parameter(t) : t + shift; }
+  /// A spline that ends before the range has its end there.
+  double parameter(double t) const {
+    return arcs ? arcs->parameter(t) : std::clamp(t + shift, spline->FirstParameter(), spline->LastParameter());
+  }
 };
 
-PlaneSpline plane_spline(const handle<Geom2d_Curve>& curve, const Interval& range) {
-  const handle<Geom2d_Curve> conic = bare(curve);
-  const auto circle = handle<Geom2d_Circle>::DownCast(conic);
-  const auto ellipse = handle<Geom2d_Ellipse>::DownCast(conic);
+/// The part of a range for which the curve is stated: edges may be longer than their curves by rounding.
+Interval stated_part(const Geom2d_Curve& curve, const Interval& range) {
+  if (curve.IsPeriodic()) return range;
+  return {std::max(range.from, curve.FirstParameter()), std::min(range.to, curve.LastParameter())};
+}
+
+Result<PlaneSpline> plane_spline(const handle<Geom2d_Curve>& curve, const Interval& range) {
+  handle<Geom2d_Curve> whole = bare_curve(curve);
+  const auto circle = handle<Geom2d_Circle>::DownCast(whole);
+  const auto ellipse = handle<Geom2d_Ellipse>::DownCast(whole);
   const double turn = 2 * std::numbers::pi * (1 + 1e-12);
   if ((!circle.IsNull() || !ellipse.IsNull()) && range.from < range.to && range.to - range.from <= turn) {
     const Arcs arcs(range.from, range.to);
-    if (!circle.IsNull()) return {ellipse_spline(circle->Position(), circle->Radius(), circle->Radius(), arcs), arcs};
-    return {ellipse_spline(ellipse->Position(), ellipse->MajorRadius(), ellipse->MinorRadius(), arcs), arcs};
+    if (!circle.IsNull())
+      return PlaneSpline{ellipse_spline(circle->Position(), circle->Radius(), circle->Radius(), arcs), arcs};
+    return PlaneSpline{ellipse_spline(ellipse->Position(), ellipse->MajorRadius(), ellipse->MinorRadius(), arcs), arcs};
   }
-  const handle<Geom2d_TrimmedCurve> part = new Geom2d_TrimmedCurve(curve, range.from, range.to);
-  PlaneSpline out{Geom2dConvert::CurveToBSplineCurve(part), {}};
+  // A part of a Bezier curve would become a spline from 0 to 1.
+  if (whole->IsKind(STANDARD_TYPE(Geom2d_BezierCurve))) whole = Geom2dConvert::CurveToBSplineCurve(whole);
+  const Interval part = stated_part(*whole, range);
+  if (!(part.from < part.to))
+    return Status(StatusCode::unsupported, "the curve of an edge in the face's parameters is stated from " +
+                                               text(whole->FirstParameter()) + " to " + text(whole->LastParameter()) +
+                                               ", the edge's range is from " + text(range.from) + " to " +
+                                               text(range.to));
+  const handle<Geom2d_TrimmedCurve> trimmed = new Geom2d_TrimmedCurve(whole, part.from, part.to);
+  PlaneSpline out{Geom2dConvert::CurveToBSplineCurve(trimmed), {}};
   if (out.spline->IsPeriodic()) out.spline->SetNotPeriodic();
-  out.shift = out.spline->FirstParameter() - range.from;
+  if (whole->IsPeriodic())
+    out.shift = whole->Period() * std::round((out.spline->FirstParameter() - range.from) / whole->Period());
   return out;
 }
 
@@ -173,9 +188,16 @@ void follow_line(const Geom2d_BSplineCurve& spline, const Reparametrization& par
 
 }  // namespace
 
+handle<Geom2d_Curve> bare_curve(handle<Geom2d_Curve> curve) {
+  while (const auto trimmed = handle<Geom2d_TrimmedCurve>::DownCast(curve)) curve = trimmed->BasisCurve();
+  return curve;
+}
+
 Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
                              const Reparametrization& parameters, double tolerance) {
-  PlaneSpline plane = plane_spline(curve, range);
+  const Result<PlaneSpline> found = plane_spline(curve, range);
+  if (!found) return found.status();
+  const PlaneSpline& plane = *found;
   const handle<Geom2d_BSplineCurve>& spline = plane.spline;
   if (reversed) spline->Reverse();
   const bool straight = is_straight_along_a_parameter(*spline);

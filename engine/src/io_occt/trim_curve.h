@@ -18,6 +18,9 @@ struct TrimCurve {
   std::vector<double> breaks;               ///< OpenCASCADE's parameters at which `parameter` is not smooth, in order
 };
 
+/// The curve inside wrappers that change neither points nor parameters.
+opencascade::handle<Geom2d_Curve> bare_curve(opencascade::handle<Geom2d_Curve> curve);
+
 /// The part of `curve` over `range` in our parameters; reverses its direction if `reversed`. Uses the curve's own
 /// spline if the parameters are equal, or if the curve is straight along one of them; otherwise cubics within
 /// `tolerance`. Circles and ellipses become rational arcs over their angles. Errors: those of Curve. May throw
