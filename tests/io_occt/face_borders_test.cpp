@@ -235,5 +235,33 @@ TEST(FaceBorders, EdgesMayStartAwayFromTheFirstKnotOfPeriodicSplines) {
   }
 }
 
+/// The square of 10 x 10 over [0, 1]^2.
+handle<Geom_Surface> bilinear_square() {
+  TColgp_Array2OfPnt poles(1, 2, 1, 2);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) poles(i + 1, j + 1) = gp_Pnt(10 * i, 10 * j, 0);
+  TColStd_Array1OfReal knots(1, 2);
+  knots(1) = 0, knots(2) = 1;
+  TColStd_Array1OfInteger multiplicities(1, 2);
+  multiplicities.Init(2);
+  return new Geom_BSplineSurface(poles, knots, knots, multiplicities, multiplicities, 1, 1);
+}
+
+TEST(FaceBorders, CurvesThatLeaveTheSurfaceWithinTheToleranceFollowItsSide) {
+  // A corner lies 0.005 beside the square.
+  const handle<Geom_Surface> square = bilinear_square();
+  for (const double tolerance : {1e-3, 1e-2}) {
+    const std::vector<TopoDS_Edge> edges = edges_on(square, polygon_border({{0.2, 0}, {1.0005, 0.3}, {0.6, 1}}));
+    for (const TopoDS_Edge& edge : edges) BRep_Builder().UpdateEdge(edge, tolerance);
+    const Model model = read(face_on(square, edges));
+    const TrimLoop& loop = edge_loops(model.shapes.at(0).faces.at(0)).at(0);
+    EXPECT_EQ(loop.coedges.size(), 3u);
+    double largest = 0;
+    for (const Curve& curve : loop.curves)
+      for (const Vec3& p : curve.points()) largest = std::max(largest, p.x);
+    EXPECT_NEAR(largest, tolerance == 1e-3 ? 1.0005 : 1, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace tessera::test

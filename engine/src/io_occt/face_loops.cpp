@@ -15,6 +15,7 @@
 #include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Iterator.hxx>
+#include <opencascade/TopoDS_Vertex.hxx>
 #include <opencascade/TopoDS_Wire.hxx>
 
 #include <algorithm>
@@ -45,10 +46,7 @@ struct Side {
   std::vector<double> knots;  // of the surface, if any
 
   double tolerance() const { return std::clamp(length_tolerance, 1e-9 * (to - from), 1e-4 * (to - from)); }
-  /// See FaceBox; `tolerance` is the length that length_tolerance belongs to.
-  double slack(double tolerance) const {
-    return period == 0 && (from == first || to == last) ? length_tolerance / tolerance : 0;
-  }
+  bool ends_with_surface() const { return period == 0 && (from == first || to == last); }
   void settle() {
     const double tol = tolerance();
     for (double* const end : {&from, &to}) {
@@ -120,32 +118,53 @@ std::vector<TopoDS_Edge> edges_of(const TopoDS_Wire& wire, const TopoDS_Face& fa
   return edges;
 }
 
-/// Moves the parts of a curve that leave the surface by less than the edge's tolerance onto the side there: the trim
-/// would cut them off, and what is cut off meets no other face along the edge.
-Status keep_on_surface(Curve& curve, const FaceBox& box, double tolerance) {
-  const Domain& d = box.domain;
-  std::vector<Vec3> points(curve.points().begin(), curve.points().end());
-  bool moved = false;
-  const auto keep = [&](double& x, double from, double to, double slack) {
-    const double inside = std::clamp(x, from, to);
-    if (inside == x || std::abs(inside - x) > slack * tolerance) return;
-    x = inside;
-    moved = true;
-  };
-  for (Vec3& p : points) {
-    keep(p.x, d.u0, d.u1, box.slack_u);
-    keep(p.y, d.v0, d.v1, box.slack_v);
+/// The sides of a surface that curves leave by less than the tolerances of their face.
+class SurfaceSides {
+ public:
+  SurfaceSides(const TopoDS_Face& face, const FaceBox& box) : box_(box), tolerance_(tolerance_of(face)) {
+    TopLoc_Location location;
+    surface_ = BRep_Tool::Surface(face, location);
+    for (TopExp_Explorer vertex(face, TopAbs_VERTEX); vertex.More(); vertex.Next())
+      tolerance_ = std::max(tolerance_, BRep_Tool::Tolerance(TopoDS::Vertex(vertex.Current())));
   }
-  if (!moved) return {};
-  Result<Curve> made = curve.is_rational()
-                           ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots(), curve.domain())
-                           : Curve::b_spline(curve.degree(), points, curve.knots(), curve.domain());
-  if (!made) return made.status();
-  curve = *std::move(made);
-  return {};
-}
 
-Status append_edge(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceBox& box,
+  /// Moves the parts of a curve that leave the surface by less than the tolerance onto the side there: the trim would
+  /// cut them off, and what is cut off meets no other face along the edge.
+  Status keep_inside(Curve& curve) const {
+    std::vector<Vec3> points(curve.points().begin(), curve.points().end());
+    bool moved = false;
+    for (Vec3& p : points) moved = keep_inside(p) || moved;
+    if (!moved) return {};
+    Result<Curve> made = curve.is_rational()
+                             ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots(), curve.domain())
+                             : Curve::b_spline(curve.degree(), points, curve.knots(), curve.domain());
+    if (!made) return made.status();
+    curve = *std::move(made);
+    return {};
+  }
+
+ private:
+  bool keep_inside(Vec3& point) const {
+    const Domain& d = box_.domain;
+    const Vec3 inside{box_.ends_u ? std::clamp(point.x, d.u0, d.u1) : point.x,
+                      box_.ends_v ? std::clamp(point.y, d.v0, d.v1) : point.y, 0};
+    if (inside.x == point.x && inside.y == point.y) return false;
+    gp_Pnt at;
+    gp_Vec along_u, along_v;
+    surface_->D1(inside.x, inside.y, at, along_u, along_v);
+    const double way =
+        std::abs(inside.x - point.x) * along_u.Magnitude() + std::abs(inside.y - point.y) * along_v.Magnitude();
+    if (!(way <= tolerance_)) return false;
+    point = inside;
+    return true;
+  }
+
+  const FaceBox& box_;
+  double tolerance_;
+  handle<Geom_Surface> surface_;
+};
+
+Status append_edge(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceBox& box, const SurfaceSides& sides,
                    const Reparametrization& parameters, const ShapeEdges& edges, TrimLoop& loop) {
   double from = 0, to = 0;
   const handle<Geom2d_Curve> curve = BRep_Tool::CurveOnSurface(edge, face, from, to);
@@ -154,7 +173,7 @@ Status append_edge(const TopoDS_Edge& edge, const TopoDS_Face& face, const FaceB
   const double tolerance = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);
   Result<TrimCurve> made = trim_curve(curve, {from, to}, edge.Orientation() == TopAbs_REVERSED, parameters, tolerance);
   if (!made) return made.status();
-  if (Status status = keep_on_surface(made->curve, box, BRep_Tool::Tolerance(edge)); !status.ok()) return status;
+  if (Status status = sides.keep_inside(made->curve); !status.ok()) return status;
   loop.coedges.push_back(edges.coedge(edge, *made, {from, to}));
   loop.curves.push_back(std::move(made->curve));
   return {};
@@ -240,7 +259,8 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
     side->settle();
     if (!(side->from < side->to)) return Status(StatusCode::unsupported, "it has no extent");
   }
-  return FaceBox{{u.from, u.to, v.from, v.to}, u.tolerance(), v.tolerance(), u.slack(tolerance), v.slack(tolerance)};
+  return FaceBox{
+      {u.from, u.to, v.from, v.to}, u.tolerance(), v.tolerance(), u.ends_with_surface(), v.ends_with_surface()};
 }
 
 Result<FaceLoops> face_loops(const TopoDS_Face& given, const FaceBox& box, const Reparametrization& parameters,
@@ -248,13 +268,14 @@ Result<FaceLoops> face_loops(const TopoDS_Face& given, const FaceBox& box, const
   // Wires of a reversed face run the other way; the region that a loop encloses does not depend on that.
   const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
   const TopoDS_Wire outer = BRepTools::OuterWire(face);
+  const SurfaceSides sides(face, box);
   FaceLoops out;
   for (TopoDS_Iterator child(face); child.More(); child.Next()) {
     if (child.Value().ShapeType() != TopAbs_WIRE) continue;
     const TopoDS_Wire wire = TopoDS::Wire(child.Value());
     TrimLoop loop{{}, !outer.IsNull() && !wire.IsSame(outer)};
     for (const TopoDS_Edge& edge : edges_of(wire, face))
-      if (Status status = append_edge(edge, face, box, parameters, edges, loop); !status.ok()) return status;
+      if (Status status = append_edge(edge, face, box, sides, parameters, edges, loop); !status.ok()) return status;
     const auto is_nameless = [](const Coedge& coedge) { return coedge.edge == no_id; };
     if (std::any_of(loop.coedges.begin(), loop.coedges.end(), is_nameless)) {
       loop.coedges.clear();

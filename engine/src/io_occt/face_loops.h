@@ -16,8 +16,7 @@ namespace tessera::inline abi_0_1 {
 struct FaceBox {
   Domain domain;
   double tolerance_u = 0, tolerance_v = 0;
-  /// How far the parameters may move per length, where the box ends with the surface; 0 where it does not.
-  double slack_u = 0, slack_v = 0;
+  bool ends_u = false, ends_v = false;  ///< a side across u, or v, of the box is one of the surface
 };
 /// The box of a face. Moves its ends to knots and ends of the surface that are within the tolerance. Errors:
 /// unsupported (unbounded, or no extent). May throw Standard_Failure.
