@@ -42,13 +42,6 @@ class LastFailure : public Message_Printer {
   std::string& text_;
 };
 
-/// A label such as "#51" or "D113".
-std::string label_of(const Interface_InterfaceModel& model, const handle<Standard_Transient>& entity) {
-  if (entity.IsNull() || model.Number(entity) == 0) return {};
-  const handle<TCollection_HAsciiString> label = model.StringLabel(entity);
-  return label.IsNull() ? std::string() : std::string(label->ToCString());
-}
-
 void collect_complaints(const Interface_InterfaceModel& model, const Interface_CheckIterator& checks, CadFile& file) {
   for (checks.Start(); checks.More(); checks.Next()) {
     const handle<Interface_Check>& check = checks.Value();
@@ -62,6 +55,12 @@ void collect_complaints(const Interface_InterfaceModel& model, const Interface_C
 }
 
 }  // namespace
+
+std::string label_of(const Interface_InterfaceModel& model, const handle<Standard_Transient>& entity) {
+  if (entity.IsNull() || model.Number(entity) == 0) return {};
+  const handle<TCollection_HAsciiString> label = model.StringLabel(entity);
+  return label.IsNull() ? std::string() : std::string(label->ToCString());
+}
 
 void take_messages(std::string& last_failure) {
   Message_SequenceOfPrinters& printers = Message::DefaultMessenger()->ChangePrinters();

@@ -1,6 +1,7 @@
 #pragma once
 // A file as OpenCASCADE reads it.
 
+#include <opencascade/Interface_InterfaceModel.hxx>
 #include <opencascade/NCollection_DataMap.hxx>
 #include <opencascade/Quantity_Color.hxx>
 #include <opencascade/TopTools_ShapeMapHasher.hxx>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "tessera/brep.h"
+#include "tessera/geometry.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
@@ -19,16 +21,23 @@ namespace tessera::inline abi_0_1 {
 /// Shapes, and their names in the file. The keys of the maps are the identities of shapes (TShape), independent of
 /// placement.
 struct CadFile {
+  using Colours = std::unordered_map<const void*, Colour>;
   TopoDS_Shape shape;
   std::unordered_map<const void*, std::string> names;   ///< of products and entities
   std::unordered_map<const void*, std::string> labels;  ///< of faces: "#51" in STEP, "D113" in IGES
-  std::unordered_map<const void*, Colour> colours;      ///< of entities
+  Colours colours;                                      ///< of entities
+  std::unordered_map<const void*, Domain> ranges;       ///< of faces without loops, which may be parts of their surface
   std::unordered_set<const void*> products;             ///< parts and assemblies of parts
-  /// Names of parts in an assembly; the key is the part at its place in the assembly that holds it.
-  NCollection_DataMap<TopoDS_Shape, std::string, TopTools_ShapeMapHasher> instance_names;
-  std::string unit, file_unit;          ///< of lengths: as read, and as the file states them
-  std::vector<std::string> complaints;  ///< OpenCASCADE's messages about parts that it cannot read
-  std::string contents;                 ///< for a file without faces: what it holds instead, or empty
+  // Of parts in an assembly; the key is the part at its place in the assembly that holds it.
+  template <class T>
+  using OfInstances = NCollection_DataMap<TopoDS_Shape, T, TopTools_ShapeMapHasher>;
+  OfInstances<std::string> instance_names;
+  OfInstances<Colours> instance_colours;  ///< of entities within this instance alone, before `colours`
+  OfInstances<Affine> moves;              ///< in the assembly's space, after the instance's location: scales, mirrors
+  std::string unit, file_unit;            ///< of lengths: as read, and as the file states them
+  std::vector<std::string> complaints;    ///< OpenCASCADE's messages about parts that it cannot read
+  std::vector<std::string> notes;         ///< what else the model lacks or changes, one sentence each
+  std::string contents;                   ///< for a file without faces: what it holds instead, or empty
 };
 
 // Loads a file. Messages begin with `path`. Changes OpenCASCADE's settings and diverts its messages. Errors:
@@ -45,6 +54,8 @@ void take_messages(std::string& last_failure);
 void set_unit();
 /// The shape, the labels and the complaints of what the reader has transferred.
 CadFile transferred(const XSControl_Reader& reader);
+/// The label of an entity, such as "#51" or "D113"; empty if the model does not hold it.
+std::string label_of(const Interface_InterfaceModel& model, const opencascade::handle<Standard_Transient>& entity);
 /// A colour of OpenCASCADE's, which are linear, in sRGB.
 Colour colour_of(const Quantity_Color& colour, double alpha);
 /// The key of a shape in the maps; null for a null shape.

@@ -4,6 +4,8 @@
 #include <opencascade/IGESData_GlobalSection.hxx>
 #include <opencascade/IGESData_IGESEntity.hxx>
 #include <opencascade/IGESData_IGESModel.hxx>
+#include <opencascade/IGESGeom_BSplineSurface.hxx>
+#include <opencascade/IGESGeom_TrimmedSurface.hxx>
 #include <opencascade/IGESGraph_Color.hxx>
 #include <opencascade/Interface_InterfaceModel.hxx>
 #include <opencascade/Interface_Static.hxx>
@@ -18,10 +20,15 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "io_occt/cad_file.h"
 #include "io_occt/iges_sections.h"
-#include "io_occt/iges_weights.h"
+#include "io_occt/iges_surfaces.h"
+#include "io_occt/iges_text.h"
+#include "io_occt/memory_file.h"
+#include "io_occt/text_encoding.h"
+#include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -44,7 +51,8 @@ std::optional<Colour> colour_of(const IGESData_IGESEntity& entity) {
   return Colour{part(red), part(green), part(blue)};
 }
 
-void collect_names(const XSControl_Reader& reader, CadFile& file) {
+void collect_names(const XSControl_Reader& reader, TextEncoding encoding, CadFile& file) {
+  bool recoded = false;
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   for (int k = 1; k <= process->NbMapped(); ++k) {
     const auto entity = handle<IGESData_IGESEntity>::DownCast(process->Mapped(k));
@@ -55,7 +63,40 @@ void collect_names(const XSControl_Reader& reader, CadFile& file) {
     if (name.IsNull()) continue;
     name->LeftAdjust();
     name->RightAdjust();
-    if (name->Length() > 0) file.names[identity(shape)] = name->ToCString();
+    if (name->Length() == 0) continue;
+    const std::string given = name->ToCString();
+    std::string& known = file.names[identity(shape)];
+    known = to_utf8(given, encoding);
+    recoded = recoded || known != given;
+  }
+  if (recoded) file.notes.push_back(std::string("its names are not UTF-8, and are taken as ") + name_of(encoding));
+}
+
+/// The B-spline surface that a face is the whole of; null if loops bound the face.
+handle<Standard_Transient> whole_surface(const handle<Standard_Transient>& entity) {
+  const auto trimmed = handle<IGESGeom_TrimmedSurface>::DownCast(entity);
+  if (trimmed.IsNull()) return handle<IGESGeom_BSplineSurface>::DownCast(entity);
+  if (trimmed->HasOuterContour() || trimmed->NbInnerContours() > 0) return {};
+  return handle<IGESGeom_BSplineSurface>::DownCast(trimmed->Surface());
+}
+
+/// The ranges that surfaces state, from the file's text: OpenCASCADE ignores them, and its version 7.6 mixes up those
+/// of u and v.
+void collect_ranges(const XSControl_Reader& reader, std::string_view text, CadFile& file) {
+  std::map<std::string, Domain> stated;
+  for (const IgesSurface& surface : iges_surfaces(text)) {
+    const std::size_t k = surface.ranges();
+    if (surface.words.size() >= k + 4)
+      stated[surface.entity] = {surface.number(k), surface.number(k + 1), surface.number(k + 2), surface.number(k + 3)};
+  }
+  const handle<Interface_InterfaceModel> model = reader.Model();
+  const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
+  for (int k = 1; k <= process->NbMapped(); ++k) {
+    const handle<Standard_Transient> surface = whole_surface(process->Mapped(k));
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process->MapItem(k));
+    if (surface.IsNull() || shape.IsNull() || shape.ShapeType() != TopAbs_FACE) continue;
+    const auto range = stated.find(label_of(*model, surface));
+    if (range != stated.end()) file.ranges[identity(shape)] = range->second;
   }
 }
 
@@ -83,7 +124,15 @@ std::string types_of(const Interface_InterfaceModel& model) {
 
 Result<CadFile> load_iges(const std::string& path) {
   if (Status status = check_iges_sections(path); !status.ok()) return status;
-  if (Status status = check_iges_weights(path); !status.ok()) return status;
+  const Result<std::string> text = read_file(path);
+  if (!text) return text.status();
+  if (Status status = check_iges_weights(*text, path); !status.ok()) return status;
+  MemoryFile completed;
+  if (const std::optional<std::string> whole = with_iges_ranges(*text)) {
+    Result<MemoryFile> copy = MemoryFile::make(*whole, path);
+    if (!copy) return copy.status();
+    completed = *std::move(copy);
+  }
   std::string failure;
   take_messages(failure);
   IGESControl_Reader reader;
@@ -91,13 +140,14 @@ Result<CadFile> load_iges(const std::string& path) {
   // Keeps splines whole, rather than splitting them where they are only C0.
   Interface_Static::SetIVal("read.iges.bspline.continuity", 0);
   reader.SetReadVisible(false);
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
+  if (reader.ReadFile((completed.path().empty() ? path : completed.path()).c_str()) != IFSelect_RetDone) {
     return Status(StatusCode::parse_error,
                   path + ": OpenCASCADE cannot read it as IGES" + (failure.empty() ? "" : ": " + failure));
   }
   reader.TransferRoots();
   CadFile file = transferred(reader);
-  collect_names(reader, file);
+  collect_names(reader, encoding_of(*text), file);
+  collect_ranges(reader, *text, file);
   file.contents = types_of(*reader.Model());
   file.file_unit = length_unit(*reader.Model());
   return file;

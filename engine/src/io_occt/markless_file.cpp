@@ -1,14 +1,10 @@
 #include "io_occt/markless_file.h"
 
-#include <sys/mman.h>
-
-#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
-#include "io/file/file.h"
 #include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
@@ -30,14 +26,10 @@ Result<MarklessFile> MarklessFile::make(const std::string& path) {
   if (!has_mark(path)) return result;
   const Result<std::string> bytes = read_file(path);
   if (!bytes) return bytes.status();
-  result.copy_ = Descriptor(::memfd_create("tessera", MFD_CLOEXEC));
-  if (!result.copy_.is_open()) return io_failure(path, "cannot be copied", errno);
-  for (std::string_view rest = std::string_view(*bytes).substr(mark.size()); !rest.empty();) {
-    const ssize_t sent = ::write(result.copy_.number(), rest.data(), rest.size());
-    if (sent < 0 && errno != EINTR) return io_failure(path, "cannot be copied", errno);
-    rest.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
-  }
-  result.path_ = "/proc/self/fd/" + std::to_string(result.copy_.number());
+  Result<MemoryFile> copy = MemoryFile::make(std::string_view(*bytes).substr(mark.size()), path);
+  if (!copy) return copy.status();
+  result.copy_ = *std::move(copy);
+  result.path_ = result.copy_.path();
   return result;
 }
 

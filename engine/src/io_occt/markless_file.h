@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/file/descriptor.h"
+#include "io_occt/memory_file.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
@@ -19,7 +19,7 @@ class MarklessFile {
  private:
   MarklessFile() = default;
   std::string path_;
-  Descriptor copy_;
+  MemoryFile copy_;
 };
 
 }  // namespace tessera::inline abi_0_1

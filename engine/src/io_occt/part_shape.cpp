@@ -1,12 +1,12 @@
 #include "io_occt/part_shape.h"
 
 #include <opencascade/BRep_Tool.hxx>
+#include <opencascade/Poly_Triangulation.hxx>
 #include <opencascade/Standard_Failure.hxx>
 #include <opencascade/Standard_OutOfMemory.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Face.hxx>
 #include <opencascade/TopoDS_Iterator.hxx>
-#include <opencascade/gp_Trsf.hxx>
 
 #include <algorithm>
 #include <utility>
@@ -66,14 +66,13 @@ struct Wholes {
 /// Gathers the faces of one part.
 class PartShape {
  public:
-  PartShape(const CadFile& file, const TopoDS_Shape& part, Shortcomings& shortcomings)
-      : file_(file), edges_(part), shortcomings_(shortcomings) {}
+  PartShape(const CadFile& file, const TopoDS_Shape& part, const PlacedPart& placed, Shortcomings& shortcomings)
+      : file_(file), placed_(placed), edges_(part), shortcomings_(shortcomings) {}
 
   void add_all(const TopoDS_Shape& shape, Wholes wholes) {
     const auto name = file_.names.find(identity(shape));
     if (name != file_.names.end() && !name->second.empty()) wholes.name = &name->second;
-    const auto colour = file_.colours.find(identity(shape));
-    if (colour != file_.colours.end()) wholes.colour = colour->second;
+    if (const Colour* const colour = placed_.colour_of(shape, file_)) wholes.colour = *colour;
     switch (shape.ShapeType()) {
       case TopAbs_FACE:
         return add_face(TopoDS::Face(shape), wholes);
@@ -125,12 +124,18 @@ class PartShape {
   Status try_face(const TopoDS_Face& face, const std::string& name, const Wholes& wholes) {
     TopLoc_Location place;
     const handle<Geom_Surface> surface = BRep_Tool::Surface(face, place);
-    if (surface.IsNull()) return Status(StatusCode::unsupported, "it has no surface");
-    const Result<FaceBox> box = face_box(face);
+    if (surface.IsNull()) {
+      const handle<Poly_Triangulation> mesh = BRep_Tool::Triangulation(face, place);
+      const int count = mesh.IsNull() ? 0 : mesh->NbTriangles();
+      return Status(StatusCode::unsupported,
+                    "it has no surface" + (count == 0 ? "" : ", it is a mesh of " + counted(count, "triangle")));
+    }
+    Result<FaceBox> box = face_box(face);
     if (!box) return box.status();
+    const bool is_part = take_range(face, name, *box);
     Result<FaceSurface> made = face_surface(surface, box->domain);
     if (!made) return made.status();
-    Result<FaceLoops> loops = face_loops(face, *box, made->parameters, edges_);
+    Result<FaceLoops> loops = is_part ? FaceLoops{} : face_loops(face, *box, made->parameters, edges_);
     if (!loops) {
       shortcomings_.whole.push_back(words(face, name) +
                                     " is taken as untrimmed, its loops cannot be read: " + loops.status().message());
@@ -151,6 +156,25 @@ class PartShape {
     out.colour = wholes.colour;
     words_.push_back(words(face, name));
     return {};
+  }
+
+  /// Cuts the box down to the range that the file states for a face without loops. Whether it became smaller.
+  bool take_range(const TopoDS_Face& face, const std::string& name, FaceBox& box) {
+    const auto found = file_.ranges.find(identity(face));
+    if (found == file_.ranges.end()) return false;
+    const Domain &whole = box.domain, &stated = found->second;
+    const Domain part{std::max(whole.u0, stated.u0), std::min(whole.u1, stated.u1), std::max(whole.v0, stated.v0),
+                      std::min(whole.v1, stated.v1)};
+    const double du = (part.u0 - whole.u0) + (whole.u1 - part.u1), dv = (part.v0 - whole.v0) + (whole.v1 - part.v1);
+    if (du <= box.tolerance_u && dv <= box.tolerance_v) return false;
+    if (part.u0 < part.u1 && part.v0 < part.v1) {
+      box.domain = part;
+      return true;
+    }
+    shortcomings_.whole.push_back(words(face, name) + " is taken as the whole surface, its range is u from " +
+                                  text(stated.u0) + " to " + text(stated.u1) + ", v from " + text(stated.v0) + " to " +
+                                  text(stated.v1));
+    return false;
   }
 
   /// Takes its edges from each face whose loops do not fit them: one edge must not cost the model.
@@ -175,6 +199,7 @@ class PartShape {
   }
 
   const CadFile& file_;
+  const PlacedPart& placed_;
   ShapeEdges edges_;
   Shortcomings& shortcomings_;
   Shape shape_;
@@ -183,16 +208,12 @@ class PartShape {
 
 }  // namespace
 
-Affine affine(const gp_Trsf& map) {
-  const auto column = [&](int k) { return Vec3{map.Value(1, k), map.Value(2, k), map.Value(3, k)}; };
-  return {.columns = {column(1), column(2), column(3)}, .translation = column(4)};
-}
-
-Shape part_shape(const CadFile& file, const TopoDS_Shape& part, const std::string* above, Shortcomings& shortcomings) {
-  PartShape faces(file, part, shortcomings);
-  faces.add_all(part, {above, {}});
+Shape part_shape(const CadFile& file, const PlacedPart& placed, Shortcomings& shortcomings) {
+  const TopoDS_Shape part = placed.shape.Located(TopLoc_Location());
+  PartShape faces(file, part, placed, shortcomings);
+  faces.add_all(part, {placed.above, {}});
   const auto own = file.names.find(identity(part));
-  return std::move(faces).finish(own != file.names.end() && !own->second.empty() ? &own->second : above);
+  return std::move(faces).finish(own != file.names.end() && !own->second.empty() ? &own->second : placed.above);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io_occt/cad_file.h"
+#include "io_occt/part_tree.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 
@@ -20,10 +21,8 @@ struct Shortcomings {
   double worst_fit = 0;                             ///< their largest distance
 };
 
-/// Reads a part in its own space: `part` has no location. Faces without a name are named after `above`, the whole that
-/// holds the part, if it is not null. May throw Standard_Failure.
-Shape part_shape(const CadFile& file, const TopoDS_Shape& part, const std::string* above, Shortcomings& shortcomings);
-
-Affine affine(const gp_Trsf& map);
+/// Reads a part in its own space, wherever it is placed. Faces without a name are named after the whole that holds the
+/// part, if that has one. May throw Standard_Failure.
+Shape part_shape(const CadFile& file, const PlacedPart& placed, Shortcomings& shortcomings);
 
 }  // namespace tessera::inline abi_0_1

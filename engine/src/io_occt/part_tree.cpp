@@ -6,10 +6,22 @@
 
 namespace tessera::inline abi_0_1 {
 
+Affine affine(const gp_Trsf& map) {
+  const auto column = [&](int k) { return Vec3{map.Value(1, k), map.Value(2, k), map.Value(3, k)}; };
+  return {.columns = {column(1), column(2), column(3)}, .translation = column(4)};
+}
+
+const Colour* PlacedPart::colour_of(const TopoDS_Shape& entity, const CadFile& file) const {
+  for (const CadFile::Colours* const own : own_colours)
+    if (const auto found = own->find(identity(entity)); found != own->end()) return &found->second;
+  const auto found = file.colours.find(identity(entity));
+  return found == file.colours.end() ? nullptr : &found->second;
+}
+
 std::vector<PlacedPart> PartTree::parts() {
   if (!file_.shape.IsNull()) {
     count_places(file_.shape);
-    add_parts(file_.shape, file_.shape, {});
+    add_parts(file_.shape, file_.shape, {}, {});
   }
   return std::move(parts_);
 }
@@ -30,25 +42,35 @@ bool PartTree::is_whole(const TopoDS_Shape& shape) {
   if (shape.ShapeType() != TopAbs_FACE)
     for (TopoDS_Iterator child(shape, false, false); child.More() && whole; child.Next()) {
       const TopoDS_Shape& part = child.Value();
-      whole = places_[identity(part)] == places && !file_.products.contains(identity(part)) && is_whole(part);
+      whole = places_[identity(part)] == places && !file_.products.contains(identity(part)) &&
+              !file_.moves.IsBound(part) && !file_.instance_colours.IsBound(part) && is_whole(part);
     }
   whole_[identity(shape)] = whole;
   return whole;
 }
 
-void PartTree::add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_parent, PlacedPart above) {
+/// Adds what the file states of an instance to what it states of the wholes that hold it.
+void PartTree::enter(const TopoDS_Shape& in_parent, const TopLoc_Location& parent, PlacedPart& above) const {
   if (const std::string* const name = file_.instance_names.Seek(in_parent)) above.name = *name;
+  if (const CadFile::Colours* const own = file_.instance_colours.Seek(in_parent)) above.own_colours.push_back(own);
+  if (const Affine* const move = file_.moves.Seek(in_parent))
+    above.move = above.move * affine(parent.Transformation()) * *move * affine(parent.Inverted().Transformation());
+}
+
+void PartTree::add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_parent, const TopLoc_Location& parent,
+                         PlacedPart above) {
+  enter(in_parent, parent, above);
   if (shape.ShapeType() != TopAbs_COMPOUND || is_whole(shape)) {
-    above.shape = shape;
+    above.shape = above.move.determinant() < 0 ? shape.Reversed() : shape;
     parts_.push_back(std::move(above));
     return;
   }
   const auto name = file_.names.find(identity(shape));
   if (name != file_.names.end() && !name->second.empty()) above.above = &name->second;
-  const auto colour = file_.colours.find(identity(shape));
-  if (colour != file_.colours.end()) above.colour = colour->second;
+  if (const Colour* const colour = above.colour_of(shape, file_)) above.colour = *colour;
   TopoDS_Iterator in_place(shape), in_shape(shape, false, false);
-  for (; in_place.More(); in_place.Next(), in_shape.Next()) add_parts(in_place.Value(), in_shape.Value(), above);
+  for (; in_place.More(); in_place.Next(), in_shape.Next())
+    add_parts(in_place.Value(), in_shape.Value(), shape.Location(), above);
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -1,7 +1,10 @@
 #pragma once
 // Finds the shapes of a file that are parts, and the places where they stand.
 
+#include <opencascade/TopLoc_Location.hxx>
 #include <opencascade/TopTools_MapOfShape.hxx>
+#include <opencascade/gp_Trsf.hxx>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -10,16 +13,24 @@
 
 namespace tessera::inline abi_0_1 {
 
-/// A part at its place.
+Affine affine(const gp_Trsf& map);
+
+/// A part at its place. A part that a move mirrors is reversed, so that its normals keep their side.
 struct PlacedPart {
   TopoDS_Shape shape;                  ///< with location and orientation in the file
   const std::string* above = nullptr;  ///< name of the nearest whole that has one and holds the part; null: none
   std::optional<Colour> colour;        ///< of the nearest whole that has one and holds the part
   std::string name;                    ///< of this instance; may be empty
+  std::vector<const CadFile::Colours*> own_colours;  ///< of entities within this instance alone, the first ones first
+  Affine move;                                       ///< after the location: scales and mirrors of mapped items
+
+  /// The colour that the file states for an entity, at this instance or else everywhere; null if there is none.
+  const Colour* colour_of(const TopoDS_Shape& entity, const CadFile& file) const;
 };
 
 /// Lists the parts of a file in their order. A part is as much of the file as stands together at each of its places:
-/// whatever is no compound, and a compound without products and without shapes that stand at more places than itself.
+/// whatever is no compound, and a compound without products, without moves and without shapes that stand at more places
+/// than itself.
 /// So no two parts share edges, except solids that a compound of products holds directly.
 class PartTree {
  public:
@@ -29,7 +40,9 @@ class PartTree {
  private:
   void count_places(const TopoDS_Shape& shape);
   bool is_whole(const TopoDS_Shape& shape);
-  void add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_parent, PlacedPart above);
+  void enter(const TopoDS_Shape& in_parent, const TopLoc_Location& parent, PlacedPart& above) const;
+  void add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_parent, const TopLoc_Location& parent,
+                 PlacedPart above);
 
   const CadFile& file_;
   TopTools_MapOfShape seen_;

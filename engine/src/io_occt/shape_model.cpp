@@ -26,7 +26,7 @@ class ModelOfParts {
     instance.first_surface = surfaces_;
     surfaces_ += model_.shapes[shape].faces.size();
     instance.name = placed.name.empty() ? *model_.shapes[shape].name : placed.name;
-    instance.placement = affine(placed.shape.Location().Transformation());
+    instance.placement = placed.move * affine(placed.shape.Location().Transformation());
     instance.colour = placed.colour;
   }
 
@@ -36,6 +36,7 @@ class ModelOfParts {
     if (model_.instances.empty()) return nothing();
     warn_of(left_out);
     warn_of(shortcomings_.whole);
+    warn_of(file_.notes);
     if (shortcomings_.fitted > 0)
       warn(counted(shortcomings_.fitted, "surface") + " fitted by splines, to within " + text(shortcomings_.worst_fit) +
            " mm");
@@ -53,9 +54,10 @@ class ModelOfParts {
     const auto own = file_.names.find(identity(placed.shape));
     const bool named = own != file_.names.end() && !own->second.empty();
     const auto [place, is_new] = shapes_.try_emplace(
-        {identity(placed.shape), placed.shape.Orientation(), named ? nullptr : placed.above}, no_id);
+        {identity(placed.shape), placed.shape.Orientation(), named ? nullptr : placed.above, placed.own_colours},
+        no_id);
     if (!is_new) return place->second;
-    Shape shape = part_shape(file_, placed.shape.Located(TopLoc_Location()), placed.above, shortcomings_);
+    Shape shape = part_shape(file_, placed, shortcomings_);
     if (shape.faces.empty()) return no_id;
     place->second = static_cast<std::uint32_t>(model_.shapes.size());
     model_.shapes.push_back(std::move(shape));
@@ -86,8 +88,9 @@ class ModelOfParts {
   const std::string& path_;
   Model model_;
   std::size_t surfaces_ = 0;  ///< of all instances so far
-  /// By identity, orientation and the name that faces without one take.
-  std::map<std::tuple<const void*, int, const std::string*>, std::uint32_t> shapes_;
+  /// By identity, orientation, the name that faces without one take, and the colours of this instance alone.
+  std::map<std::tuple<const void*, int, const std::string*, std::vector<const CadFile::Colours*>>, std::uint32_t>
+      shapes_;
   Shortcomings shortcomings_;
 };
 

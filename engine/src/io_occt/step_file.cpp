@@ -1,19 +1,11 @@
 // STEP through OpenCASCADE.
 
-#include <opencascade/Quantity_Color.hxx>
-#include <opencascade/STEPConstruct.hxx>
-#include <opencascade/STEPConstruct_Styles.hxx>
 #include <opencascade/STEPControl_Reader.hxx>
 #include <opencascade/StepBasic_Product.hxx>
 #include <opencascade/StepBasic_ProductDefinition.hxx>
 #include <opencascade/StepBasic_ProductDefinitionFormation.hxx>
 #include <opencascade/StepRepr_NextAssemblyUsageOccurrence.hxx>
-#include <opencascade/StepRepr_RepresentationItem.hxx>
 #include <opencascade/StepShape_ShapeRepresentation.hxx>
-#include <opencascade/StepVisual_Colour.hxx>
-#include <opencascade/StepVisual_PresentationStyleAssignment.hxx>
-#include <opencascade/StepVisual_PresentationStyleByContext.hxx>
-#include <opencascade/StepVisual_StyledItem.hxx>
 #include <opencascade/TColStd_SequenceOfAsciiString.hxx>
 #include <opencascade/TCollection_HAsciiString.hxx>
 #include <opencascade/TransferBRep.hxx>
@@ -23,6 +15,11 @@
 #include <opencascade/XSControl_WorkSession.hxx>
 
 #include "io_occt/cad_file.h"
+#include "io_occt/memory_file.h"
+#include "io_occt/step_contents.h"
+#include "io_occt/step_instances.h"
+#include "io_occt/text_encoding.h"
+#include "tessera/io.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -48,36 +45,9 @@ void collect_names(const XSControl_Reader& reader, CadFile& file) {
       file.products.insert(identity(shape));
     }
     const auto use = handle<StepRepr_NextAssemblyUsageOccurrence>::DownCast(process->Mapped(k));
-    if (!use.IsNull() && !use->Name().IsNull() && use->Name()->Length() > 0)
-      file.instance_names.Bind(shape, use->Name()->ToCString());
-  }
-}
-
-/// Whether a style is for an item in one context, such as one instance, and not wherever the item stands.
-bool is_of_context(const StepVisual_StyledItem& style) {
-  for (int k = 1; k <= style.NbStyles(); ++k)
-    if (style.StylesValue(k)->IsKind(STANDARD_TYPE(StepVisual_PresentationStyleByContext))) return true;
-  return false;
-}
-
-/// The colours of solids, shells and faces. Colours of single instances, and of edges, are left out.
-void collect_colours(const XSControl_Reader& reader, CadFile& file) {
-  const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
-  STEPConstruct_Styles styles(reader.WS());
-  if (!styles.LoadStyles()) return;
-  for (int k = 1; k <= styles.NbStyles(); ++k) {
-    const handle<StepVisual_StyledItem> style = styles.Style(k);
-    handle<StepVisual_Colour> surface, border, curve, rendered;
-    double transparency = 0;
-    bool ignored = false;  // true also for styles without a context, in OpenCASCADE 7.6
-    if (style.IsNull() || is_of_context(*style) ||
-        !styles.GetColors(style, surface, border, curve, rendered, transparency, ignored))
-      continue;
-    Quantity_Color colour;
-    const handle<StepVisual_Colour>& shown = rendered.IsNull() ? surface : rendered;
-    if (shown.IsNull() || style->Item().IsNull() || !STEPConstruct_Styles::DecodeColor(shown, colour)) continue;
-    const TopoDS_Shape shape = STEPConstruct::FindShape(process, style->Item());
-    if (!shape.IsNull()) file.colours[identity(shape)] = colour_of(colour, 1 - transparency);
+    if (use.IsNull()) continue;
+    for (const handle<TCollection_HAsciiString>& name : {use->Id(), use->Name()})
+      if (!name.IsNull() && name->UsefullLength() > 0) file.instance_names.Bind(shape, name->ToCString());
   }
 }
 
@@ -98,11 +68,22 @@ void transfer_representations(STEPControl_Reader& reader) {
 }  // namespace
 
 Result<CadFile> load_step(const std::string& path) {
+  Result<std::string> text = read_file(path);
+  if (!text) return text.status();
+  const TextEncoding encoding = encoding_of(*text);
+  const StepKinds kinds = step_kinds(*text);
+  MemoryFile recoded;
+  if (encoding != TextEncoding::utf8) {
+    Result<MemoryFile> copy = MemoryFile::make(to_utf8(*text, encoding), path);
+    if (!copy) return copy.status();
+    recoded = *std::move(copy);
+  }
+  *text = {};
   std::string failure;
   take_messages(failure);
   STEPControl_Reader reader;
   set_unit();
-  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) {
+  if (reader.ReadFile((recoded.path().empty() ? path : recoded.path()).c_str()) != IFSelect_RetDone) {
     return Status(StatusCode::parse_error,
                   path + ": OpenCASCADE cannot read it as STEP" + (failure.empty() ? "" : ": " + failure));
   }
@@ -111,7 +92,13 @@ Result<CadFile> load_step(const std::string& path) {
   CadFile file = transferred(reader);
   collect_names(reader, file);
   collect_colours(reader, file);
+  collect_moves(reader, file);
   file.file_unit = length_unit(reader);
+  file.contents = contents_of(kinds);
+  if (encoding != TextEncoding::utf8)
+    file.notes.push_back(std::string("its names are not UTF-8, and are taken as ") + name_of(encoding));
+  if (const std::string unread = unread_shapes(kinds); !unread.empty())
+    file.notes.push_back("shapes of these kinds are not read: " + unread);
   return file;
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+// The encoding of a file's text, which STEP and IGES do not state.
+
+#include <string>
+#include <string_view>
+
+namespace tessera::inline abi_0_1 {
+
+enum class TextEncoding { utf8, latin1, gbk };
+
+/// Guesses the encoding: UTF-8 if the text is valid as such. Otherwise GBK if most bytes beyond ASCII are pairs of the
+/// common Chinese characters of GB 2312 (its level 1, and marks), or else Latin-1 in the form of Windows-1252.
+TextEncoding encoding_of(std::string_view text);
+
+/// The text as UTF-8.
+std::string to_utf8(const std::string& text, TextEncoding encoding);
+
+/// "GBK", as messages name it.
+const char* name_of(TextEncoding encoding);
+
+}  // namespace tessera::inline abi_0_1
