@@ -99,6 +99,24 @@ TEST(OutputFile, WithoutCommitNothingStaysBehind) {
   EXPECT_EQ(content_of(folder / "a.txt"), "before");
 }
 
+TEST(OutputFile, NamesAreAsLongAsTheFolderTakes) {
+  const ScratchFolder folder;
+  for (const std::size_t length : {236u, 237u, 243u, 244u, 254u, 255u}) {
+    // Two names that differ at their ends alone are written at once.
+    const std::string start(length - 1, 'n'), first = folder / (start + 'a'), second = folder / (start + 'b');
+    Result<OutputFile> one = OutputFile::make(first), other = OutputFile::make(second);
+    ASSERT_TRUE(one.ok() && other.ok()) << length << " " << one.status().message();
+    EXPECT_NE(one->temporary(), other->temporary());
+    one->write("one"), other->write("other");
+    EXPECT_TRUE(one->commit().ok() && other->commit().ok());
+    EXPECT_EQ(content_of(first), "one");
+    EXPECT_EQ(content_of(second), "other");
+    EXPECT_EQ(folder.names().size(), 2u) << length;
+    std::filesystem::remove(first), std::filesystem::remove(second);
+  }
+  EXPECT_EQ(write_text(folder / std::string(256, 'n'), "x").code(), StatusCode::io_error);
+}
+
 TEST(OutputFile, PiecesOfEverySizeArriveInOrder) {
   const ScratchFolder folder;
   std::string expected;

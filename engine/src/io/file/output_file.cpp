@@ -4,10 +4,13 @@
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <climits>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -131,12 +134,32 @@ class HeldSignals {
   sigset_t before_;
 };
 
+/// The path of a temporary: `target` with an ending. Where the folder takes no name that long, the end of the target's
+/// name is left out, and a hash of all of it tells such names apart (FNV-1a, Fowler, Noll, Vo 1991).
+fs::path temporary_path(const fs::path& target, std::size_t longest, int number) {
+  const std::string name = target.filename().string(), ending = ".tessera-" + std::to_string(number) + ".tmp";
+  if (name.size() + ending.size() <= longest) return target.parent_path() / (name + ending);
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  char digits[24];
+  const int length = std::snprintf(digits, sizeof digits, "~%016llx", static_cast<unsigned long long>(hash));
+  const std::string end = std::string(digits, static_cast<std::size_t>(length)) + ending;
+  return target.parent_path() / (name.substr(0, longest > end.size() ? longest - end.size() : 0) + end);
+}
+
+/// The most bytes that a name in the target's folder may have.
+std::size_t longest_name(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const long most = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  return most > 0 ? static_cast<std::size_t>(most) : NAME_MAX;
+}
+
 /// Creates `target`.tessera-0.tmp, or the next one that no living writer has, and locks it as long as it is open.
 Temporary open_temporary(const fs::path& target) {
   constexpr int max_writers = 1000;  // of one target at once
+  const std::size_t longest = longest_name(target);
   for (int number = 0, tries = 0; number < max_writers && tries < 2 * max_writers; ++tries) {
-    fs::path path = target;
-    path += ".tessera-" + std::to_string(number) + ".tmp";
+    fs::path path = temporary_path(target, longest, number);
     const HeldSignals held;
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.is_open()) {
