@@ -248,6 +248,11 @@ TEST_F(GltfReading, OtherFilesMustLieBesideOrBelow) {
     EXPECT_EQ(status.code(), StatusCode::unsupported) << outside;
     EXPECT_NE(status.message().find("must be relative to this file, without .."), std::string::npos) << outside;
   }
+  const ScratchFolder elsewhere;
+  std::filesystem::create_symlink(elsewhere.file("square.bin", square_bytes()), folder_ / "link.bin");
+  uri = "link.bin";
+  EXPECT_EQ(read(file).status().code(), StatusCode::unsupported);
+  EXPECT_NE(read(file).status().message().find("it is a link to "), std::string::npos);
   for (const char* const bad : {"", "%", "%2", "%zz", "a%00b", "data:,x", "data:application/octet-stream;base64,"}) {
     uri = bad;
     expect_refused(file, "/buffers/0/uri: expected");

@@ -228,6 +228,14 @@ TEST_F(RibArchiveFiles, OtherFoldersCyclesAndDepthAreRefused) {
     expect_refused("\nReadArchive \"" + std::string(outside) + "\"", StatusCode::unsupported,
                    "m.rib:2: ReadArchive: \"" + std::string(outside) + "\" is not read: the path must be relative");
   expect_refused("ReadArchive \"sub\"", StatusCode::io_error, "m.rib:1: ReadArchive: ");
+  const test::ScratchFolder elsewhere;
+  std::filesystem::create_symlink(elsewhere.file("a.rib", "Sphere 1 -1 1 360\n"), folder_ / "link.rib");
+  std::filesystem::create_directory_symlink(elsewhere.path(), folder_ / "folder");
+  for (const char* const link : {"link.rib", "folder/a.rib"})
+    expect_refused("ReadArchive \"" + std::string(link) + "\"", StatusCode::unsupported,
+                   "m.rib:1: ReadArchive: \"" + (folder_ / link) + "\" is not read: it is a link to ");
+  std::filesystem::create_symlink(folder_.file("sub/ball.rib", "Sphere 1 -1 1 360\n"), folder_ / "within.rib");
+  EXPECT_TRUE(read("ReadArchive \"within.rib\"").ok());
   expect_refused("ReadArchive 3", StatusCode::parse_error, "m.rib:1: expected the name of a file, found \"3\"");
   for (int k = 0; k < 40; ++k)
     folder_.file(std::to_string(k) + ".rib", "ReadArchive \"" + std::to_string(k + 1) + ".rib\"\n");

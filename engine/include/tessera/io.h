@@ -67,8 +67,8 @@ Result<Model> parse_g2(std::string_view text, std::string_view name);
 /// - Quadrics (Sphere, Cone, Cylinder, Hyperboloid, Paraboloid, Disk, Torus) are exact. u runs with the angle and v as
 ///   RenderMan's, so normals point to the same side; on rational arcs and on a paraboloid they keep another pace.
 /// - ReadArchive reads files beside the file that names them, beside the first file, or below; `name` as a path finds
-///   them. An absolute path, a part "..", an archive that reads itself and more than 32 levels are errors; a file that
-///   is missing is a warning.
+///   them. An absolute path, a part "..", a symbolic link out of the first file's folder, an archive that reads itself
+///   and more than 32 levels are errors; a file that is missing is a warning.
 /// - Copies by ObjectInstance are limited to 4 times the files plus 1 MiB, and archives that are read again to 64 times
 ///   the files plus 1 MiB.
 ///
@@ -153,7 +153,7 @@ struct MeshReadOptions {
 ///   where their bits are equal.
 /// - .glb and .gltf: glTF 2.0, all triangles of the default scene, placed by its nodes; the translation of the first
 ///   mesh is the origin. Normals and texture coordinates are kept if all triangles have them. Buffers may lie in files
-///   beside the file or below. Sparse and compressed accessors are errors; points, lines, skins, morph targets and
+///   beside the file or below, but not behind symbolic links out of its folder. Sparse and compressed accessors are errors; points, lines, skins, morph targets and
 ///   animations are skipped with a warning.
 ///
 /// Errors: io_error, parse_error, unsupported. Memory: for glTF at most 64 times the file and its buffers plus 16 MiB,

@@ -26,6 +26,18 @@ Result<fs::path> path_beside(std::string_view file, std::string_view relative) {
   return (fs::path(file).parent_path() / path).lexically_normal();
 }
 
+Status check_below(std::string_view file, const fs::path& path) {
+  std::error_code error;
+  const fs::path parent = fs::path(file).parent_path();
+  const fs::path folder = fs::canonical(parent.empty() ? fs::path(".") : parent, error);
+  const fs::path place = error ? fs::path() : fs::canonical(path, error);
+  if (error) return {};  // whoever opens the file says what is wrong
+  const auto [rest, unused] = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end());
+  if (rest == folder.end()) return {};
+  return {StatusCode::unsupported, quote(path.string()) + " is not read: it is a link to " + quote(place.string()) +
+                                       ", outside of the folder " + quote(folder.string())};
+}
+
 Result<std::string> read_regular_file(const fs::path& path) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))

@@ -204,6 +204,7 @@ std::string_view GltfNumbers::load_file(const JsonValue& uri) {
   if (!decoded) uri.fail(decoded.status().message());
   const Result<std::filesystem::path> path = path_beside(name_, *decoded);
   if (!path) uri.fail(path.status().message(), path.status().code());
+  if (const Status status = check_below(name_, *path); !status.ok()) uri.fail(status.message(), status.code());
   auto& file = files_[path->string()];
   if (!file) {
     Result<std::string> bytes = read_regular_file(*path);

@@ -27,6 +27,8 @@ Result<const RibArchive*> RibArchives::open(const TextCursor& at, std::string_vi
     if (found.empty() && fs::exists(*path, error)) found = path->string();
   }
   if (found.empty()) return nullptr;
+  if (const Status status = check_below(open_.front(), found); !status.ok())
+    return failure(at, status.message(), status.code());
   const auto is_open = [&](const std::string& path) { return fs::path(path).lexically_normal() == found; };
   if (std::any_of(open_.begin(), open_.end(), is_open))
     return failure(at, "the file " + found + " reads itself", StatusCode::parse_error);
