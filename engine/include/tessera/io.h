@@ -121,13 +121,25 @@ Status write_model(const PatchSet& set, const std::filesystem::path& path);
 ///   the origin is the translation of their node. Normals are made unit; parameters are texture coordinates. Colours of
 ///   parts become materials.
 ///
-/// .obj, .ply and .stl add the origin in double and round to float where needed. .stl and glTF have no faces of four
-/// corners and get two triangles per quad, see split_quads().
+/// .obj, .ply and .stl add the origin in double. .stl rounds the sums to float. So do .obj and .ply where that moves
+/// vertices by at most 2^-16 of the mesh's size, the largest |x|, |y| or |z| of its positions; they hold the sums as
+/// doubles otherwise, as for a mesh far from zero. file_rounding() bounds what this adds to Tessellation::bound().
+///
+/// .stl and glTF have no faces of four corners and get two triangles per quad, see split_quads().
 ///
 /// Errors: io_error, unsupported (the extension; a glTF file beyond 2 GiB); for a mesh that no file can hold
 /// invalid_argument (no vertices; for .stl, .glb and .gltf no triangles; an index or a part out of range),
 /// count_mismatch, non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+
+/// Returns a bound of the distance between a vertex of the mesh (in double, if it has positions in double) and that of
+/// the file that write_mesh() makes of it: the mesh of the file keeps Tessellation::bound() plus this. It is 0 for
+/// glTF, whose positions are relative to the origin, if they are in float. 2^-24 of the largest coordinate comes from
+/// rounding to float. Errors: none. Other extensions count as files of floats, like those of mesh_pieces.h.
+double file_rounding(const Mesh& mesh, const std::filesystem::path& path);
+/// Returns file_rounding() of any mesh with this origin, whose positions relative to it have |x|, |y| and |z| of at most
+/// `reach`. `has_doubles`: whether it has positions in double.
+double file_rounding(const std::filesystem::path& path, const Vec3& origin, const Vec3& reach, bool has_doubles);
 
 /// Writes the meshes of an assembly in a format of write_mesh(). The file appears whole or not at all.
 ///

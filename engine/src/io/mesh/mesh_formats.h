@@ -14,14 +14,14 @@
 namespace tessera::inline abi_0_1 {
 
 /// Writes Wavefront OBJ: v, vt, vn, f, and g for parts. Patches of faces are not kept. If the mesh has positions in
-/// double, they are written so that they read back as the same doubles.
+/// double, or needs_double_sums(), doubles are written so that they read back as the same.
 Status write_obj(const Mesh& mesh, OutputFile& out);
 /// Reads polygons as fans, and negative indices; ignores groups, objects, smoothing and materials. Keeps normals and
 /// parameters if there is one per vertex, as write_obj writes them; drops them otherwise.
 Result<Mesh> parse_obj(std::string_view text, std::string_view name, const MeshReadOptions& options = {});
 
 /// Writes PLY, binary little endian: x y z nx ny nz u v; vertex_indices, patch. Quads come after all triangles. If the
-/// mesh has positions in double, they are properties of type double.
+/// mesh has positions in double, or needs_double_sums(), they are properties of type double.
 Status write_ply(const Mesh& mesh, OutputFile& out);
 /// Reads binary little endian or ascii, with properties of any number type in any order; skips unknown ones and reads
 /// polygons as fans.

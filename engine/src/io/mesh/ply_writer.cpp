@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "io/mesh/file_rounding.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/packed_records.h"
 #include "io/mesh/valid_mesh.h"
@@ -25,6 +26,11 @@ template <class T>
 char* put(char* to, const T* values, std::size_t count) {
   std::memcpy(to, values, count * sizeof(T));
   return to + count * sizeof(T);
+}
+
+void put_doubles(const Vec3& v, char* to) {
+  const double values[] = {v.x, v.y, v.z};
+  put(to, values, 3);
 }
 
 std::string header_text(const MeshTotals& totals) {
@@ -52,16 +58,18 @@ std::uint64_t first_of(const PiecePlace& place, MeshRecord kind) {
                                         : place.first_quad;
 }
 
-void pack_vertices(const Mesh& mesh, std::size_t first, std::size_t last, char* to) {
-  const bool doubles = !mesh.positions_f64.empty(), normals = !mesh.normals.empty(),
+/// Stores positions as doubles if `doubles` is set, else as floats.
+void pack_vertices(const Mesh& mesh, bool doubles, std::size_t first, std::size_t last, char* to) {
+  const bool own_doubles = !mesh.positions_f64.empty(), normals = !mesh.normals.empty(),
              parameters = !mesh.parameters.empty();
   for (std::size_t k = first; k < last; ++k) {
-    if (doubles) {
+    if (own_doubles) {
       to = put(to, mesh.positions_f64.data() + 3 * k, 3);
     } else {
       const float* const p = mesh.positions.data() + 3 * k;
-      put_floats(mesh.origin + Vec3{p[0], p[1], p[2]}, to);
-      to += 3 * sizeof(float);
+      const Vec3 sum = mesh.origin + Vec3{p[0], p[1], p[2]};
+      doubles ? put_doubles(sum, to) : put_floats(sum, to);
+      to += 3 * (doubles ? sizeof(double) : sizeof(float));
     }
     if (normals) to = put(to, mesh.normals.data() + 3 * k, 3);
     if (parameters) to = put(to, mesh.parameters.data() + 2 * k, 2);
@@ -160,14 +168,16 @@ Status PlyLayout::check(const Mesh& piece, const PiecePlace& place) const {
 
 void PlyLayout::pack(const Mesh& piece, const PiecePlace& place, MeshRecord kind, std::size_t first, std::size_t last,
                      char* to) const {
-  if (kind == MeshRecord::vertex) return pack_vertices(piece, first, last, to);
+  if (kind == MeshRecord::vertex) return pack_vertices(piece, totals_.double_positions, first, last, to);
   if (kind == MeshRecord::triangle)
     return pack_faces<3>(place, piece.indices, totals_.patches ? &piece.patches : nullptr, first, last, to);
   pack_faces<4>(place, piece.quads, totals_.patches ? &piece.quad_patches : nullptr, first, last, to);
 }
 
 Status write_ply(const Mesh& mesh, OutputFile& out) {
-  const Result<PlyLayout> layout = PlyLayout::make(MeshTotals::of(mesh));
+  MeshTotals totals = MeshTotals::of(mesh);
+  totals.double_positions |= needs_double_sums(PositionRange::of(mesh));
+  const Result<PlyLayout> layout = PlyLayout::make(totals);
   if (!layout) return layout.status();
   out.write(layout->header());
   return write_records(*layout, mesh, {}, false, out);  // the file may be a pipe

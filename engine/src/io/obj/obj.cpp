@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "io/mesh/file_rounding.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon.h"
 #include "io/obj/obj_index.h"
@@ -46,6 +47,22 @@ void write_face(OutputFile& out, std::span<const std::uint32_t> corners, bool pa
   out.write('f');
   for (const std::uint32_t corner : corners) write_corner(out, corner, parameters, normals);
   out.write('\n');
+}
+
+/// Writes a vertex in the model's coordinates.
+void write_position(OutputFile& out, const Mesh& mesh, std::size_t k, bool has_double_sums) {
+  if (!mesh.positions_f64.empty()) {
+    write_record<double>(out, "v", std::span(mesh.positions_f64).subspan(3 * k, 3));
+    return;
+  }
+  const float* const p = mesh.positions.data() + 3 * k;
+  const Vec3 sum = mesh.origin + Vec3{p[0], p[1], p[2]};
+  if (has_double_sums) {
+    write_record<double>(out, "v", std::array{sum.x, sum.y, sum.z});
+  } else {
+    write_record<float>(out, "v",
+                        std::array{static_cast<float>(sum.x), static_cast<float>(sum.y), static_cast<float>(sum.z)});
+  }
 }
 
 class ObjReader {
@@ -143,18 +160,12 @@ class ObjReader {
 
 Status write_obj(const Mesh& mesh, OutputFile& out) {
   const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty();
+  const bool has_double_sums = needs_double_sums(PositionRange::of(mesh));
   const std::string quads = mesh.quads.empty() ? "" : ", " + std::to_string(mesh.quad_count()) + " quads";
   out.write("# Tessera: " + std::to_string(mesh.vertex_count()) + " vertices, " +
             std::to_string(mesh.triangle_count()) + " triangles" + quads + "\n");
   for (std::size_t k = 0; k < mesh.vertex_count() && !out.failed(); ++k) {
-    if (mesh.positions_f64.empty()) {
-      const float* const p = mesh.positions.data() + 3 * k;
-      const std::array<float, 3> position{file_coordinate(mesh.origin.x, p[0]), file_coordinate(mesh.origin.y, p[1]),
-                                          file_coordinate(mesh.origin.z, p[2])};
-      write_record<float>(out, "v", position);
-    } else {
-      write_record<double>(out, "v", std::span(mesh.positions_f64).subspan(3 * k, 3));
-    }
+    write_position(out, mesh, k, has_double_sums);
     if (parameters) write_record<float>(out, "vt", std::span(mesh.parameters).subspan(2 * k, 2));
     if (normals) write_record<float>(out, "vn", std::span(mesh.normals).subspan(3 * k, 3));
   }
