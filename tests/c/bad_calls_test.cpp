@@ -53,11 +53,61 @@ TEST(CBadCalls, OptionsOutOfRange) {
   tsr_run run = sized<tsr_run>();
   run.threads = -2;
   expect_c_error(tsr_set_new(&made, model.get(), nullptr, &run), TSR_INVALID_ARGUMENT, "threads is -2");
+  for (const std::int32_t threads : {TSR_MAX_THREADS + 1, 10'000'000, INT32_MAX}) {
+    run.threads = threads;
+    expect_c_error(tsr_set_new(&made, model.get(), nullptr, &run), TSR_INVALID_ARGUMENT,
+                   "threads is " + std::to_string(threads) + ", expected 0 to 1024");
+  }
   tsr_scene_options scene_options;
   tsr_scene_defaults(&scene_options);
   scene_options.pieces = 3;
   tsr_scene* scene = nullptr;
   expect_c_error(tsr_scene_new(&scene, set.get(), &scene_options, nullptr), TSR_INVALID_ARGUMENT, "3");
+}
+
+TEST(CBadCalls, MembersThatMeanNothingElse) {
+  const Handle<tsr_model> model = model_of(wavy_field(1, 1));
+  const Handle<tsr_set> set = set_of(model.get(), TSR_SET_POINTS | TSR_SET_DOUBLE);
+  const Handle<tsr_scene> scene = scene_of(set.get());
+  const auto refused = [](tsr_status found, const std::string& words) {
+    expect_c_error(found, TSR_INVALID_ARGUMENT, words);
+  };
+  tsr_run run = sized<tsr_run>();
+  run.reserved = 1;
+  refused(tsr_scene_refit(scene.get(), &run), "tsr_run: reserved is 1, expected 0");
+  tsr_set_options packing;
+  tsr_set_defaults(&packing);
+  packing.reserved = 4;
+  tsr_set* made = nullptr;
+  refused(tsr_set_new(&made, model.get(), &packing, nullptr), "tsr_set_options: reserved is 4");
+  tsr_plan_options options;
+  tsr_plan_defaults(&options);
+  options.tolerance = 1, options.reserved = 1u << 31;
+  tsr_plan* plan = nullptr;
+  refused(tsr_plan_new(&plan, set.get(), &options, nullptr), "tsr_plan_options: reserved is 2147483648");
+  tsr_scene_options casting;
+  tsr_scene_defaults(&casting);
+  casting.is_editable = 2;
+  tsr_scene* cast = nullptr;
+  refused(tsr_scene_new(&cast, set.get(), &casting, nullptr), "is_editable is 2, expected 0 or 1");
+  const double half = 0.5;
+  for (const auto& [is_double, reserved] : {std::pair(2, 0), std::pair(-1, 0), std::pair(1, 1)}) {
+    const std::string words = reserved ? "reserved is 1" : "is_double is " + std::to_string(is_double);
+    tsr_jets jets = sized<tsr_jets>();
+    jets.is_double = is_double, jets.reserved = reserved;
+    refused(tsr_set_grid(set.get(), &half, 1, &half, 1, &jets, nullptr), "tsr_jets: " + words);
+    const tsr_in at{&half, 1, 0, 0};
+    refused(tsr_set_evaluate(set.get(), nullptr, &at, &at, &jets, nullptr), "tsr_jets: " + words);
+    const std::vector<double> three{0, 0, 1};
+    tsr_rays rays = sized<tsr_rays>();
+    tsr_hits_out hits = sized<tsr_hits_out>();
+    rays.origin = rays.direction = in_of(three, 3);
+    rays.is_double = is_double, rays.reserved = reserved;
+    refused(tsr_scene_closest(scene.get(), &rays, &hits, nullptr), "tsr_rays: " + words);
+    rays.is_double = 1, rays.reserved = 0;
+    hits.is_double = is_double, hits.reserved = reserved;
+    refused(tsr_scene_closest(scene.get(), &rays, &hits, nullptr), "tsr_hits_out: " + words);
+  }
 }
 
 TEST(CBadCalls, ShortAndMisalignedMemory) {

@@ -1,6 +1,7 @@
 // Meshes through C: those of C++, byte for byte; updates, files, and shapes at their places.
 
 #include "c/c_objects.h"
+#include "support/file_triangles.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
@@ -158,6 +159,36 @@ TEST(CMesh, ShapesAtTheirPlaces) {
   EXPECT_EQ(value_of(read_mesh(path)).triangle_count(), mesh.triangle_count);
   expect_c_error(tsr_model_save_meshes(joined.get(), meshes, sets, 2, path.c_str()), TSR_COUNT_MISMATCH, "1 shapes");
   expect_c_error(tsr_model_save_meshes(model.get(), meshes, sets, 1, path.c_str()), TSR_INVALID_ARGUMENT, "no shapes");
+}
+
+TEST(CMesh, FilesFarFromZeroKeepTheBoundAndTheirRounding) {
+  const char ball[] =
+      R"({"format": "tessera", "version": 1, "surfaces": [{"kind": "sphere", "radius": 1,
+          "axis": {"origin": [12958095.124851028, 4865499.469870342, 0]}}]})";
+  tsr_model* read = nullptr;
+  ASSERT_C(tsr_model_parse(&read, ball, sizeof ball - 1, "ball"));
+  const Handle<tsr_model> model(read);
+  const Handle<tsr_set> set = set_of(model.get());
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-2);
+  tsr_plan_info info = sized<tsr_plan_info>();
+  ASSERT_C(tsr_plan_describe(plan.get(), &info));
+  MeshMemory memory(plan.get());
+  const tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  const ScratchFolder folder;
+  for (const std::string name : {"a.stl", "a.obj", "a.ply", "a.glb"}) {
+    double rounding = -1;
+    ASSERT_C(tsr_mesh_rounding(&mesh, set.get(), name.c_str(), &rounding)) << name;
+    ASSERT_C(tsr_mesh_save(&mesh, set.get(), (folder / name).c_str())) << name;
+    const double found =
+        distance_from_sphere(triangles_of_file(folder / name), {12958095.124851028, 4865499.469870342, 0}, 1);
+    EXPECT_LE(found, info.bound + rounding + 1e-8) << name;
+    EXPECT_EQ(rounding > 0.01, name == "a.stl") << name;
+  }
+  double kept = 7;
+  expect_c_error(tsr_mesh_rounding(&mesh, set.get(), "a.xyz", &kept), TSR_UNSUPPORTED, ".xyz");
+  expect_c_error(tsr_mesh_rounding(&mesh, set.get(), "a.stl", nullptr), TSR_INVALID_ARGUMENT, "rounding is a null");
+  EXPECT_EQ(kept, 7);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@
  *
  * Structs: `struct_size` is sizeof the struct as the caller was compiled with, so that later versions can append
  * members. tsr_*_defaults() fills a struct of options; a null pointer stands for the defaults. In structs that are
- * filled, the caller sets struct_size alone.
+ * filled, the caller sets struct_size alone. Members named is_... are 0 or 1, and `reserved` is 0; other values are
+ * TSR_INVALID_ARGUMENT.
  *
  * Memory: the library keeps no pointer of the caller's beyond a call, and returns nothing to free but handles.
  *
@@ -75,10 +76,11 @@ tsr_status tsr_retain(void* handle);
 tsr_status tsr_release(void* handle);
 
 /* --- How calls run ----------------------------------------------------------------------------------------------- */
+enum { TSR_MAX_THREADS = 1024 };
 /* A NULL pointer to it: all threads of the machine. */
 typedef struct tsr_run {
   size_t struct_size;
-  int32_t threads;                            /* 1 and more; 0: all of the machine */
+  int32_t threads;                            /* 1 to TSR_MAX_THREADS; 0: all of the machine */
   int32_t reserved;                           /* 0 */
   const volatile uint8_t* cancel;             /* NULL, or 0 until another thread sets it to 1: the call then ends */
   void (*progress)(double share, void* user); /* NULL, or called from any thread, one call at a time: 0 to 1 */
@@ -209,7 +211,7 @@ tsr_status tsr_set_edit(tsr_set* set, const uint32_t* patches, size_t count, con
 /* Outputs of an evaluation; null data: not computed. Vectors have three components, the rest one. */
 typedef struct tsr_jets {
   size_t struct_size;
-  int32_t is_double;                         /* numbers are double, else float */
+  int32_t is_double;                         /* 1: numbers are double; 0: float */
   int32_t reserved;                          /* 0 */
   tsr_out position;                          /* in the model; of grids in float relative to the set's origin */
   tsr_out du, dv, duu, duv, dvv;             /* derivatives */
@@ -306,6 +308,9 @@ tsr_status tsr_mesh_check(const tsr_mesh* mesh, tsr_mesh_report* report);
 /* Writes a mesh: .obj, .ply, .stl, .glb, .gltf. `set`: that of its plan, for the origin and, with patches, for names and
  * colours of surfaces; NULL: the origin is 0. */
 tsr_status tsr_mesh_save(const tsr_mesh* mesh, const tsr_set* set, const char* path);
+/* *rounding: how far the file that tsr_mesh_save() writes may move vertices, because it holds floats in the model's
+ * coordinates. The mesh of the file keeps tsr_plan_info.bound plus this. */
+tsr_status tsr_mesh_rounding(const tsr_mesh* mesh, const tsr_set* set, const char* path, double* rounding);
 /* Writes one mesh per shape of a model, each at all its places, with names and colours. `sets`: those of the meshes. */
 tsr_status tsr_model_save_meshes(const tsr_model* model, const tsr_mesh* const* meshes, const tsr_set* const* sets,
                                  size_t count, const char* path);
@@ -338,7 +343,7 @@ tsr_status tsr_scene_describe(const tsr_scene* scene, tsr_scene_info* info);
  * hold for all rays. A ray that is not valid is a miss. */
 typedef struct tsr_rays {
   size_t struct_size;
-  int32_t is_double; /* numbers are double, else float */
+  int32_t is_double; /* 1: numbers are double; 0: float */
   int32_t reserved;  /* 0 */
   tsr_in origin, direction;
   tsr_in tnear, tfar;  /* null data: 0, and infinity */
@@ -357,7 +362,7 @@ enum {
 /* Hits, one record per ray. A miss has t = infinity, indices of 0xffffffff and 0 elsewhere. */
 typedef struct tsr_hits_out {
   size_t struct_size;
-  int32_t is_double;      /* numbers are double, else float */
+  int32_t is_double;      /* 1: numbers are double; 0: float */
   int32_t reserved;       /* 0 */
   tsr_out kind;           /* uint8_t: TSR_MISS, ... */
   tsr_out flags;          /* uint8_t: TSR_HIT_* */

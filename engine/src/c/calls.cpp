@@ -95,11 +95,16 @@ CStatus check_size(const char* name, std::size_t given, std::size_t least, std::
              (least == own ? "" : std::to_string(least) + " to ") + std::to_string(own));
 }
 
+CStatus check_member(const char* name, const char* member, std::int64_t value, std::int64_t most) {
+  if (value >= 0 && value <= most) return {};
+  return bad(std::string(name) + ": " + member + " is " + std::to_string(value) + ", expected 0" +
+             (most == 0 ? "" : (most == 1 ? " or " : " to ") + std::to_string(most)));
+}
+
 CStatus run_work(const tsr_run* run, FunctionRef<CStatus(const Execution&)> work) {
   tsr_run options{};
   if (CStatus status = read_struct("tsr_run", run, options); status.code) return status;
-  if (options.threads < 0)
-    return bad("tsr_run: threads is " + std::to_string(options.threads) + ", expected 0 or more");
+  if (CStatus status = check_member("tsr_run", "threads", options.threads, TSR_MAX_THREADS); status.code) return status;
   watch_forks();
   if (is_forked)
     return {TSR_UNSUPPORTED,

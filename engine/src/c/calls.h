@@ -110,13 +110,29 @@ CStatus in_use(Object::Kind kind);
 /// Checks the size of a caller's struct; `least` is that of its first version.
 CStatus check_size(const char* name, std::size_t given, std::size_t least, std::size_t own);
 
-/// Reads a struct of the caller's, which may be of an earlier version, over the defaults in `out`.
+/// Checks a member that must be from 0 to `most`.
+CStatus check_member(const char* name, const char* member, std::int64_t value, std::int64_t most);
+
+/// Checks the members that mean the same in every struct: `reserved` is 0, flags are 0 or 1.
+template <class T>
+CStatus check_members(const char* name, const T& read) {
+  CStatus status;
+  if constexpr (requires { read.reserved; }) status = check_member(name, "reserved", read.reserved, 0);
+  if constexpr (requires { read.is_double; })
+    if (!status.code) status = check_member(name, "is_double", read.is_double, 1);
+  if constexpr (requires { read.is_editable; })
+    if (!status.code) status = check_member(name, "is_editable", read.is_editable, 1);
+  return status;
+}
+
+/// Reads a struct of the caller's, which may be of an earlier version, over the defaults in `out`, and checks the
+/// members that all structs have in common.
 template <class T>
 CStatus read_struct(const char* name, const T* given, T& out) {
   if (!given) return {};
   if (CStatus status = check_size(name, given->struct_size, sizeof(T), sizeof(T)); status.code) return status;
   std::memcpy(&out, given, std::min(given->struct_size, sizeof(T)));
-  return {};
+  return check_members(name, out);
 }
 /// Writes a struct of the caller's, and keeps its struct_size.
 template <class T>

@@ -30,8 +30,8 @@ Result<std::vector<MeshPart>> parts_of(const Mesh& mesh, const CSet& set) {
   return set.shape ? parts_by_face(mesh, set.set, model.shapes[*set.shape]) : parts_by_surface(mesh, set.set, model);
 }
 
-/// Copies a mesh, with the origin and the parts of its set.
-CStatus named_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
+/// Copies a mesh, with the origin of its set.
+CStatus placed_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
   if (CStatus status = mesh_copy(mesh, copy); status.code) return status;
   if (!set) return {};
   const Held<CSet> of(set);
@@ -39,7 +39,17 @@ CStatus named_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
   const Reading reading(of->usage);
   if (!reading) return in_use(Object::Kind::set);
   copy.origin = of->set.origin();
-  if (!copy.has_patches()) return {};
+  return {};
+}
+
+/// Copies a mesh, with the origin and the parts of its set.
+CStatus named_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
+  if (CStatus status = placed_copy(mesh, set, copy); status.code) return status;
+  if (!set || !copy.has_patches()) return {};
+  const Held<CSet> of(set);
+  if (!of) return of.error();
+  const Reading reading(of->usage);
+  if (!reading) return in_use(Object::Kind::set);
   Result<std::vector<MeshPart>> parts = parts_of(copy, *of);
   if (!parts) return parts.status();
   copy.parts = *std::move(parts);
@@ -129,6 +139,17 @@ tsr_status tsr_mesh_save(const tsr_mesh* mesh, const tsr_set* set, const char* p
     Mesh copy;
     if (CStatus status = named_copy(mesh, set, copy); status.code) return status;
     return write_mesh(copy, path);
+  });
+}
+
+tsr_status tsr_mesh_rounding(const tsr_mesh* mesh, const tsr_set* set, const char* path, double* rounding) {
+  return c_call([&]() -> CStatus {
+    if (!path || !rounding) return null_pointer(path ? "rounding" : "path");
+    Mesh copy;
+    if (CStatus status = placed_copy(mesh, set, copy); status.code) return status;
+    if (Status status = check_mesh_format(path); !status.ok()) return status;
+    *rounding = file_rounding(copy, path);
+    return {};
   });
 }
 

@@ -32,13 +32,36 @@ def array_of(name: str, value: Any, dtype: Any = np.float64) -> np.ndarray:
     return array.astype(wanted)
 
 
-def pair_of(name: str, value: Any) -> tuple[int, int]:
-    """Returns two integers, one per direction, of one or two."""
+def integer_of(name: str, value: Any, least: int, most: int) -> int:
+    """Returns an integer from ``least`` to ``most``. C takes the last bits of any other number without a word."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise ArgumentTypeError(f"{name}: expected an integer, found {value!r}") from None
+    if not least <= number <= most:
+        raise ArgumentError(f"{name} is {number}, expected an integer from {least} to {most}")
+    return number
+
+
+def index_of(noun: str, value: Any, count: int) -> int:
+    """Returns the place of an element among ``count``, also of one that is counted from the end, by -1 and less."""
+    try:
+        index = operator.index(value)
+    except TypeError:
+        raise ArgumentTypeError(f"{noun}: expected an integer, found {value!r}") from None
+    if not -count <= index < count:
+        raise IndexError(f"there is no {noun} {index}, the {'model' if noun == 'surface' else 'set'} has {count}")
+    return index % count
+
+
+def pair_of(name: str, value: Any, least: int, most: int) -> tuple[int, int]:
+    """Returns two integers from ``least`` to ``most``, one per direction, of one or two."""
     try:
         first, second = value if np.ndim(value) else (value, value)
-        return operator.index(first), operator.index(second)
+        first, second = operator.index(first), operator.index(second)
     except (TypeError, ValueError):
         raise ArgumentTypeError(f"{name}: expected an integer or one per direction, found {value!r}") from None
+    return integer_of(name, first, least, most), integer_of(name, second, least, most)
 
 
 def names_of(quantities: Any) -> list[str]:

@@ -11,9 +11,11 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from ._arrays import integer_of
 from ._library import library, struct
-from .errors import ArgumentError, Error, error_of
+from .errors import Error, error_of
 
+MAX_THREADS = 1024
 _threads: contextvars.ContextVar[int] = contextvars.ContextVar("tessera_threads", default=0)
 _Progress = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p)
 Progress = Callable[[float], Any]
@@ -21,15 +23,13 @@ Progress = Callable[[float], Any]
 
 @contextlib.contextmanager
 def threads(count: int) -> Iterator[None]:
-    """Runs the calls of a block on ``count`` threads; 0 stands for all of the machine, as outside of such blocks.
+    """Runs the calls of a block on ``count`` threads, at most 1024; 0 stands for all of the machine, as outside of such blocks.
 
     >>> import tessera as ts
     >>> with ts.threads(1):
     ...     mesh = ts.read(goblet).patches().tessellate(1e-2)
     """
-    if not 0 <= count < 2**31:
-        raise ArgumentError(f"threads is {count}, expected 0 or more")
-    token = _threads.set(count)
+    token = _threads.set(integer_of("threads", count, 0, MAX_THREADS))
     try:
         yield
     finally:

@@ -79,6 +79,7 @@ _FUNCTIONS = {
     "tsr_plan_update": "ippspsppp",
     "tsr_mesh_check": "ipp",
     "tsr_mesh_save": "ippz",
+    "tsr_mesh_rounding": "ippzp",
     "tsr_model_save_meshes": "ipppsz",
     "tsr_scene_defaults": "-p",
     "tsr_scene_new": "ipppp",

@@ -6,8 +6,11 @@ import ctypes
 import os
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ._calls import call
 from ._library import library
+from .meshes import warn_of_rounding
 
 if TYPE_CHECKING:
     from .meshes import Mesh
@@ -40,6 +43,18 @@ class Assembly:
         pointers = (ctypes.c_void_p * count)(*(ctypes.addressof(each) for each in structs))
         sets = (ctypes.c_void_p * count)(*(mesh._set._handle for mesh in self.meshes if mesh._set is not None))
         call(library.tsr_model_save_meshes, self.model._handle, pointers, sets, count, os.fsencode(path))
+        if os.fsdecode(path).lower().endswith(".stl"):
+            warn_of_rounding(path, 2.0**-23 * self._largest(), min(mesh._tolerance for mesh in self.meshes))
+
+    def _largest(self) -> float:
+        """Returns the largest coordinate of all places."""
+        largest = 0.0
+        for instance in self.instances:
+            placed = instance.placement
+            positions = self.meshes[instance.shape].positions()
+            if len(positions):
+                largest = max(largest, np.abs(positions @ placed[:3, :3].T + placed[:3, 3]).max())
+        return largest
 
     def __repr__(self) -> str:
         triangles = sum(len(mesh.faces) for mesh in self.meshes)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import array_of, check_out, in_view, names_of, out_view, records_of
+from ._arrays import array_of, check_out, in_view, integer_of, names_of, out_view, records_of
 from ._calls import run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -89,9 +89,7 @@ class Jets:
 
 def _new_jets(shape: tuple[int, ...], dtype: Any, derivatives: int, quantities: Sequence[str] | None) -> Jets:
     if quantities is None:
-        if derivatives not in (0, 1, 2):
-            raise ArgumentError(f"derivatives is {derivatives}, expected 0, 1 or 2")
-        quantities = _ORDERS[derivatives]
+        quantities = _ORDERS[integer_of("derivatives", derivatives, 0, 2)]
     arrays = {}
     for name in names_of(quantities):
         components = QUANTITIES.get(name)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from ._arrays import integer_of
 from ._calls import call
 from ._library import library, struct
 
@@ -25,7 +26,7 @@ def limits(store_bytes: int = 0) -> Limits:
     """Measures this machine on the calling thread, in a fraction of a second. ``store_bytes``: the size of the output
     in question; 0: 160 MiB."""
     info = struct("tsr_limits_info")
-    call(library.tsr_limits, store_bytes, ctypes.byref(info))
+    call(library.tsr_limits, integer_of("store_bytes", store_bytes, 0, 2**63 - 1), ctypes.byref(info))
     return Limits(**{name: getattr(info, name) for name in Limits.__dataclass_fields__})
 
 
@@ -49,7 +50,7 @@ def measure(work: Callable[[], Any], repeats: int = 5) -> Measurement:
     True
     """
     seconds, result = float("inf"), None
-    for _ in range(repeats):
+    for _ in range(integer_of("repeats", repeats, 1, 2**31 - 1)):
         start = time.perf_counter()
         result = work()
         seconds = min(seconds, time.perf_counter() - start)

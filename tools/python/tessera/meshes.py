@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import os
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, out_view, pair_of, vectors_of
+from ._arrays import address_of, integer_of, out_view, pair_of, vectors_of
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError, StateError
@@ -77,19 +78,22 @@ class _Plan(Handle):
         return info
 
 
+MAX_RATE, MAX_PIXELS = 4096, 1 << 20
 _LONG = 200  # patches, below which a plan is made at once
 
 
 def _fill(options: Any, wanted: dict[str, Any]) -> None:
-    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap", "max_triangles")
+    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap")
     for name in limits:
         if wanted[name] is not None:
             try:
                 setattr(options, name, wanted[name])
             except TypeError:
                 raise ArgumentTypeError(f"{name}: expected a number, found {wanted[name]!r}") from None
+    if wanted["max_triangles"] is not None:
+        options.max_triangles = integer_of("max_triangles", wanted["max_triangles"], 1, 2**64 - 1)
     if wanted["rates"] is not None:
-        options.rate_u, options.rate_v = pair_of("rates", wanted["rates"])
+        options.rate_u, options.rate_v = pair_of("rates", wanted["rates"], 1, MAX_RATE)
     is_limited = any(wanted[name] is not None for name in ("tolerance", "angle", "pixels", "rates"))
     flags = {
         _RELATIVE: wanted["relative"],
@@ -114,7 +118,8 @@ def _fill(options: Any, wanted: dict[str, Any]) -> None:
     for name in ("field_of_view", "extent", "near_distance"):
         if getattr(view, name) is not None:
             setattr(options, name, getattr(view, name))
-    options.width, options.height = view.width, view.height
+    for name in ("width", "height"):
+        setattr(options, name, integer_of(f"view.{name}", getattr(view, name), 1, MAX_PIXELS))
 
 
 def _is_double(dtype: Any) -> bool:
@@ -160,6 +165,7 @@ class Mesh:
         self._plan: _Plan | None = None
         self._set: PatchSet | None = None
         self._wanted: dict[str, Any] = {}
+        self._tolerance = float("inf")
 
     def _make(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
         plan = _Plan(patches, wanted, progress and (lambda share: progress(share / 2)))
@@ -193,6 +199,7 @@ class Mesh:
         self.quad_patches = self._records("quad_patches", info.quads, 1, np.uint32)
         self.origin = np.zeros(3) if is_double else self._set.origin
         self.bound, self.gap, self.angle, self.pixels = info.bound, info.gap, info.angle, info.pixels
+        self._tolerance = info.tolerance
         self.is_proven, self.open_edges = bool(info.is_proven), info.open_edges
         return info
 
@@ -252,9 +259,19 @@ class Mesh:
         return MeshReport(**{name: getattr(report, name) for name in MeshReport.__dataclass_fields__})
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes .obj, .ply, .stl, .glb or .gltf, with names and colours of the surfaces."""
+        """Writes .obj, .ply, .stl, .glb or .gltf, with names and colours of the surfaces. Warns if the numbers of the
+        file are too coarse for the tolerance: see rounding()."""
         of = None if self._set is None else self._set._handle
         call(library.tsr_mesh_save, ctypes.byref(self._struct()), of, os.fsencode(path))
+        warn_of_rounding(path, self.rounding(path), self._tolerance)
+
+    def rounding(self, path: str | os.PathLike[str]) -> float:
+        """Returns how far a file with the extension of ``path`` may move vertices, since .stl holds floats in the
+        model's coordinates, and .ply and .obj may. The mesh of the file keeps ``bound`` plus this."""
+        of = None if self._set is None else self._set._handle
+        found = ctypes.c_double()
+        call(library.tsr_mesh_rounding, ctypes.byref(self._struct()), of, os.fsencode(path), ctypes.byref(found))
+        return found.value
 
     def positions(self) -> np.ndarray:
         """Returns the vertices in the model, in double."""
@@ -312,6 +329,17 @@ class Mesh:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _plan=None, _store={})
         self.__dict__.setdefault("_float", self.vertices)
+        self.__dict__.setdefault("_tolerance", float("inf"))
+
+
+def warn_of_rounding(path: str | os.PathLike[str], rounding: float, tolerance: float) -> None:
+    """Warns if rounding takes more than a sixteenth of a tolerance."""
+    if 16 * rounding > tolerance:
+        warnings.warn(
+            f"{os.fsdecode(path)}: floats of this file move vertices by up to {rounding:.3g}, because the model lies "
+            f"far from zero; the tolerance is {tolerance:.3g}. A .glb keeps it, and so do .ply and .obj",
+            stacklevel=3,
+        )
 
 
 def in_out(array: np.ndarray) -> Any:

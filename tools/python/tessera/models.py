@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, pair_of
+from ._arrays import address_of, array_of, index_of, pair_of
 from ._calls import Handle, call, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError, FileError
@@ -20,6 +20,7 @@ from .patches import PatchSet
 if TYPE_CHECKING:
     from .assemblies import Assembly
 
+MAX_DEGREE = 15
 _UNIT, _WARNING, _SURFACE, _KIND, _SHAPE, _INSTANCE = range(6)
 
 
@@ -164,10 +165,7 @@ class Model(Handle):
             if key not in names:
                 raise KeyError(f"no surface is named {key!r}; there {_listed(names)}")
             return Surface(self, names.index(key))
-        count, index = len(self), int(key)
-        if not -count <= index < count:
-            raise IndexError(f"there is no surface {index}, the model has {count}")
-        return Surface(self, index % count)
+        return Surface(self, index_of("surface", key, len(self)))
 
     def __iter__(self) -> Iterator[Surface]:
         return (Surface(self, k) for k in range(len(self)))
@@ -311,7 +309,7 @@ def _fill(to: Any, spline: Spline, kept: list[Any]) -> None:
         degree = (points.shape[0] - 1, points.shape[1] - 1)
     if degree is None:
         raise ArgumentTypeError("degree: expected one beside the knots")
-    to.degree_u, to.degree_v = pair_of("degree", degree)
+    to.degree_u, to.degree_v = pair_of("degree", degree, 1, MAX_DEGREE)
     if spline.name:
         to.name = spline.name.encode()
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, check_out
+from ._arrays import address_of, array_of, check_out, index_of, integer_of
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -94,8 +94,8 @@ class PatchSet(Handle):
         self._options = (shape, whole, points, double, fit_tolerance)
         self._edited: set[int] = set()
         options = struct("tsr_set_options")
-        options.shape = -1 if shape is None else shape
-        options.flags = _WHOLE * whole | _POINTS * points | _DOUBLE * double
+        options.shape = -1 if shape is None else integer_of("shape", shape, 0, 2**63 - 1)
+        options.flags = _WHOLE * bool(whole) | _POINTS * bool(points) | _DOUBLE * bool(double)
         options.fit_tolerance = fit_tolerance or 0
         handle = ctypes.c_void_p()
         run(library.tsr_set_new, ctypes.byref(handle), model._handle, ctypes.byref(options), makes=handle)
@@ -111,9 +111,7 @@ class PatchSet(Handle):
         return self._count
 
     def __getitem__(self, index: int) -> Patch:
-        if not -self._count <= index < self._count:
-            raise IndexError(f"there is no patch {index}, the set has {self._count}")
-        return Patch(self, index % self._count)
+        return Patch(self, index_of("patch", index, self._count))
 
     def __iter__(self) -> Iterator[Patch]:
         return (Patch(self, k) for k in range(self._count))

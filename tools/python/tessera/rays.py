@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, check_out, in_view, names_of, out_view, records_of, vectors_of
+from ._arrays import address_of, array_of, check_out, in_view, integer_of, names_of, out_view, records_of, vectors_of
 from ._calls import Handle, call, run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -166,7 +166,8 @@ class Scene(Handle):
         self._options = (tolerance, pieces, editable)
         options = struct("tsr_scene_options")
         library.tsr_scene_defaults(ctypes.byref(options))
-        options.tolerance, options.pieces, options.is_editable = tolerance or 0, pieces, editable
+        options.tolerance, options.is_editable = tolerance or 0, bool(editable)
+        options.pieces = integer_of("pieces", pieces, 1, 8)
         handle = ctypes.c_void_p()
         run(library.tsr_scene_new, ctypes.byref(handle), patches._handle, ctypes.byref(options), makes=handle)
         self._handle = handle

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from tessera import _library
+from tessera import _calls, _library
 
 
 @pytest.fixture
@@ -59,6 +59,7 @@ def test_values_are_those_of_the_header(header):
     assert (rays.MISS, rays.HIT, rays.INVALID_RAY) == (0, 1, 2)
     values = {name: int(value) for name, value in re.findall(r"(TSR_\w+) = (\d+)", header)}
     assert values["TSR_HIT_UNCERTIFIED"] == rays._UNCERTIFIED
+    assert values["TSR_MAX_THREADS"] == _calls.MAX_THREADS
     for name in ("RELATIVE", "SHARE", "QUADS", "FEWEST", "SMALLEST", "DOUBLE", "APART"):
         assert values[f"TSR_PLAN_{name}"] == getattr(meshes, f"_{name}")
     for name in ("WHOLE", "POINTS", "DOUBLE"):

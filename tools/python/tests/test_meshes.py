@@ -1,6 +1,8 @@
 """Meshes: what is proven, memory, edits, files, other packages."""
 
+import json
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -139,6 +141,26 @@ def test_files(goblet, tmp_path):
         mesh.save(tmp_path / "goblet.xyz")
     with pytest.raises(OSError):
         mesh.save(tmp_path / "no" / "goblet.ply")
+
+
+def test_files_far_from_zero(tmp_path):
+    ball = {"kind": "sphere", "radius": 1, "axis": {"origin": [12958095.124851028, 4865499.469870342, 0]}}
+    model = ts.parse(json.dumps({"format": "tessera", "version": 1, "surfaces": [ball]}))
+    mesh = model.patches().tessellate(1e-2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for name in ("ball.obj", "ball.ply", "ball.glb"):
+            assert mesh.rounding(name) < 1e-6
+            mesh.save(tmp_path / name)
+    lines = (tmp_path / "ball.obj").read_text().splitlines()
+    points = np.array([line.split()[1:4] for line in lines if line.startswith("v ")], float)
+    radii = np.linalg.norm(points - ball["axis"]["origin"], axis=1)
+    assert np.abs(radii - 1).max() <= mesh.bound + 1e-7
+    assert mesh.rounding("ball.stl") > 0.1
+    with pytest.warns(UserWarning, match="floats of this file move vertices by up to"):
+        mesh.save(tmp_path / "ball.stl")
+    with pytest.raises(ts.UnsupportedError):
+        mesh.rounding("ball.xyz")
 
 
 def test_another_reader_finds_the_same_mesh(goblet, tmp_path):
