@@ -120,9 +120,7 @@ class Pool {
       : limits_(limits), next_(next), work_(work), done_(done), processes_(limits.workers) {}
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
-  ~Pool() {
-    for (Process& process : processes_) end(process);
-  }
+  ~Pool() { end_all(); }
 
   Status run() {
     std::signal(SIGPIPE, SIG_IGN);
@@ -247,17 +245,37 @@ class Pool {
     return Status(StatusCode::internal, "the process that worked on it ended " + how);
   }
 
-  void end(Process& process) {
-    if (process.id == 0) return;
-    ::close(process.jobs);
-    for (int k = 0; process.job && k < requests; ++k) {
-      ::kill(-process.id, SIGTERM);
-      pollfd file{process.results, POLLIN, 0};
-      if (::poll(&file, 1, static_cast<int>(patience.count())) != 0) break;
+  /// Ends all workers before the grace of this process is over (see console.cpp). A second request makes a worker end at once, without its temporaries.
+  void end_all() {
+    for (Process& process : processes_)
+      if (process.id != 0) ::close(process.jobs);  // an idle worker ends
+    for (const int until_next : {200, 100}) {  // milliseconds
+      for (Process& process : processes_)
+        if (process.id != 0 && process.job) ::kill(-process.id, SIGTERM);
+      wait_for_ends(std::chrono::milliseconds(until_next));
     }
-    if (process.job) ::kill(-process.id, SIGKILL);
-    ::waitpid(process.id, nullptr, 0);
-    ::close(process.results);
+    for (Process& process : processes_) {
+      if (process.id == 0) continue;
+      if (process.job) ::kill(-process.id, SIGKILL);
+      ::waitpid(process.id, nullptr, 0);
+      ::close(process.results);
+    }
+  }
+
+  /// Waits until all workers have closed their results, or time is up. A result that comes meanwhile is dropped.
+  void wait_for_ends(std::chrono::milliseconds time) {
+    const auto end = Clock::now() + time;
+    for (Process& process : processes_) {
+      while (process.id != 0 && process.job) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+        pollfd file{process.results, POLLIN, 0};
+        const int found = left > 0 ? ::poll(&file, 1, static_cast<int>(left)) : 0;
+        if (found < 0 && errno == EINTR) continue;
+        if (found <= 0) break;
+        char dropped[4096];
+        if (::read(process.results, dropped, sizeof dropped) <= 0) process.job.reset();  // it has ended
+      }
+    }
   }
 
   const WorkerLimits& limits_;

@@ -1,5 +1,8 @@
 #include "console.h"
 
+#include <pthread.h>
+#include <sys/time.h>
+
 #include <csignal>
 #include <cstdio>
 
@@ -12,16 +15,27 @@ std::atomic<bool> interrupt_flag{false};
 volatile std::sig_atomic_t caught_signal = 0;
 const char* program_name = "tessera";
 
+/// How long the work has to see the flag, and to take back what it has written.
+constexpr suseconds_t grace = 400'000;  // microseconds
+
+/// Ends the process by a signal once its handler returns, and leaves no temporary.
+void end_at_once(int signal) {
+  remove_temporaries();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
 extern "C" void remember_signal(int signal) {
-  if (caught_signal != 0) {
-    remove_temporaries();
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);  // delivered when the handler returns
-    return;
-  }
+  if (caught_signal != 0) return end_at_once(signal);
   caught_signal = signal;
   interrupt_flag.store(true, std::memory_order_relaxed);
+  // Not all work looks at the flag. A timer of a parent is no child's, so it is set here, where worker processes come
+  // by, too; setitimer() is one system call, which a handler may make.
+  const itimerval end{.it_interval = {0, 0}, .it_value = {0, grace}};
+  (void)::setitimer(ITIMER_REAL, &end, nullptr);
 }
+
+extern "C" void end_after_grace(int) { end_at_once(caught_signal); }
 
 }  // namespace
 
@@ -50,6 +64,13 @@ Status in_file(const std::filesystem::path& file, const Status& status) {
 void catch_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};
+  action.sa_handler = end_after_grace;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGALRM, &action, nullptr);
+  sigset_t alarm;
+  sigemptyset(&alarm);
+  sigaddset(&alarm, SIGALRM);
+  ::pthread_sigmask(SIG_UNBLOCK, &alarm, nullptr);
   action.sa_handler = remember_signal;
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
