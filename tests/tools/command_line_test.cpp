@@ -17,6 +17,22 @@ TEST_F(CommandLine, HelpAndVersion) {
   EXPECT_EQ(output_of({"--version"}).rfind("tessera ", 0), 0u);
 }
 
+TEST_F(CommandLine, NoOptionsFollowTwoDashes) {
+  const std::string goblet = content_of(TESSERA_SOURCE_DIR "/tools/models/goblet.json");
+  for (const char* const name : {"-part.json", "--json", "--", "-"}) folder_.file(name, goblet);
+  std::filesystem::rename(folder_ / "--json", folder_ / "--json.json");
+  EXPECT_NE(output_of({"info", "--", "-part.json"}).find("1 surface"), std::string::npos);
+  EXPECT_NE(output_of({"info", "--", "--json.json"}).find("1 surface"), std::string::npos);
+  EXPECT_EQ(output_of({"info", "--json", "--", "-part.json", "--json.json"}).front(), '{');
+  output_of({"tessellate", "-o", "a.ply", "--", "-part.json"});
+  EXPECT_EQ(output_of({"info", TESSERA_SOURCE_DIR "/tools/models/goblet.json", "--"}).empty(), false);
+  expect_failure({"info", "--", "--"}, 1, "--: unsupported format");
+  expect_failure({"info", "--"}, 2, "expected files");
+  expect_failure({"completion", "bash", "--", "zsh"}, 2, "completion: the word zsh is not expected");
+  expect_failure({"--", "info"}, 2, "the word info is not expected");
+  expect_failure({"tessellate", "-part.json", "--"}, 2, "tessellate has no option -part.json");
+}
+
 TEST_F(CommandLine, HelpThatCannotBeWrittenEndsWithOne) {
   for (const char* option : {"--help", "--version"}) {
     const ToolRun result = run_program(folder_, {"sh", "-c", "exec \"$@\" >/dev/full", "sh", TESSERA_TOOL, option});

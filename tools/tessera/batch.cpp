@@ -170,6 +170,10 @@ std::vector<std::string> result_words(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
+    if (word == "--") {  // files follow
+      words.insert(words.end(), argv + k, argv + argc);
+      break;
+    }
     if (std::ranges::find(flags, word) != std::end(flags)) continue;
     if (std::ranges::find(with_value, word) != std::end(with_value)) {
       ++k;

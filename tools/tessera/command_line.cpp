@@ -106,6 +106,39 @@ void check_rules(const Command& command) {
   if (!names.empty()) throw UsageError(here, "expected " + listed(names, "or") + ", found none of them");
 }
 
+/// Whether a word is an option that takes the word after it.
+bool takes_next(const Command& command, const std::string& word) {
+  const auto takes = [&](const Option& option) {
+    return !option.value.empty() && !option.is_positional() &&
+           std::find(option.names.begin(), option.names.end(), word) != option.names.end();
+  };
+  return std::any_of(command.options.begin(), command.options.end(), takes) ||
+         std::any_of(command.commands.begin(), command.commands.end(),
+                     [&](const Command& sub) { return takes_next(sub, word); });
+}
+
+/// The place of the "--" after which no options follow, or argc.
+int end_of_options(const Command& tool, int argc, const char* const* argv) {
+  for (int k = 1; k < argc; ++k)
+    if (argv[k] == std::string_view("--") && !takes_next(tool, argv[k - 1])) return k;
+  return argc;
+}
+
+/// Adds words that follow "--" to those without a name. Throws UsageError if the command has none of these.
+void add_words_after_mark(const Command& command, std::vector<std::string> words, Values& values) {
+  for (const Option& option : command.options) {
+    if (!option.is_positional()) continue;
+    std::vector<std::string>& own = values[&option];
+    const std::size_t room = option.repeated ? words.size() : own.empty() ? 1 : 0;
+    const auto last = words.begin() + static_cast<std::ptrdiff_t>(std::min(room, words.size()));
+    own.insert(own.end(), words.begin(), last);
+    words.erase(words.begin(), last);
+  }
+  if (!words.empty())
+    throw UsageError((command.name.empty() ? "expected a command before --" : command.name) + ": the word " + words[0] +
+                     " is not expected");
+}
+
 void use(Command& command, const Values& values) {
   for (Option& option : command.options) option.count = values.at(&option).size();
   check_rules(command);
@@ -224,8 +257,9 @@ Parsed parse(Command& tool, int argc, const char* const* argv) {
   declare(tool, app, values);
   app.require_subcommand(0, 1);
   std::string fault;
+  const int end = end_of_options(tool, argc, argv);
   try {
-    app.parse(argc, argv);
+    app.parse(end, argv);
   } catch (const CLI::ParseError& error) {
     fault = error.what();
   }
@@ -237,6 +271,7 @@ Parsed parse(Command& tool, int argc, const char* const* argv) {
   if (chosen) check_no_words_left(tool, *chosen, app.get_subcommand(chosen->name)->remaining());
   check_no_words_left(tool, tool, app.remaining());
   if (!fault.empty()) throw UsageError(fault_of_syntax(chosen ? *chosen : tool, fault));
+  if (end < argc) add_words_after_mark(chosen ? *chosen : tool, {argv + end + 1, argv + argc}, values);
   use(tool, values);
   if (!chosen) return {};
   use(*chosen, values);
