@@ -1,13 +1,40 @@
 // tessera tessellate --in-pieces: the bytes of the whole, for models larger than memory.
 
+#include <sys/resource.h>
+
 #include <filesystem>
+#include <fstream>
 
 #include "tools/tool_test.h"
 
 namespace tessera::test {
 namespace {
 
-class PiecesTest : public ToolTest {};
+class PiecesTest : public ToolTest {
+ protected:
+  struct Peak {
+    double pieces = 0, megabytes = 0;
+  };
+  /// The most resident memory of a run, which a process of its own asks for: the system keeps the largest of all
+  /// children.
+  Peak peak_of(const Names& command) const {
+    int ends[2];
+    EXPECT_EQ(::pipe(ends), 0);
+    Peak peak;
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const ToolRun made = run(command);
+      rusage usage{};
+      ::getrusage(RUSAGE_CHILDREN, &usage);
+      if (made.status == 0) peak = {nlohmann::json::parse(made.output)["pieces"], double(usage.ru_maxrss) / 1024};
+      std::_Exit(::write(ends[1], &peak, sizeof peak) == sizeof peak ? 0 : 1);
+    }
+    EXPECT_EQ(::read(ends[0], &peak, sizeof peak), static_cast<ssize_t>(sizeof peak));
+    ::waitpid(child, nullptr, 0);
+    ::close(ends[0]), ::close(ends[1]);
+    return peak;
+  }
+};
 
 TEST_F(PiecesTest, BytesAreThoseOfTheWhole) {
   const std::string g2 = TESSERA_SOURCE_DIR "/tests/corpus/g2/elementary.g2";
@@ -35,6 +62,29 @@ TEST_F(PiecesTest, BytesAreThoseOfTheWhole) {
       }
     }
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(PiecesTest, MemoryIsThatOfAPieceAndOfTheProgram) {
+  constexpr int count = 150;
+  std::ofstream file(folder_ / "field.bpt");
+  file << count * count << '\n';
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) {
+      file << "3 3\n";
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b)
+          file << 3 * i + a << ' ' << 3 * j + b << ' ' << ((3 * i + a) * 7 + (3 * j + b) * 5) % 11 * 0.25 << '\n';
+    }
+  file.close();
+  for (const int megabytes : {4, 8, 32}) {
+    const Peak peak = peak_of({"tessellate", "field.bpt", "-o", "a.ply", "--json", "--relative", "1e-3", "--threads",
+                               "2", "--in-pieces", std::to_string(megabytes) + "M"});
+    EXPECT_GT(peak.pieces, 1) << megabytes;
+    // The program, a piece that is "about" so large, and the search for neighbours, as the guide states them.
+    EXPECT_LE(peak.megabytes, 20 + 1.25 * megabytes + 0.2 * peak.pieces) << peak.pieces;
+  }
+}
+#endif
 
 TEST_F(PiecesTest, AnIndexNamesFilesOfPieces) {
   const std::string output = output_of({"tessellate", teapot, "-o", "new/a.pvtp", "--in-pieces", "100K"});

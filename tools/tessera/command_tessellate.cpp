@@ -12,6 +12,7 @@
 #include "meshing.h"
 #include "output.h"
 #include "pieces.h"
+#include "strict.h"
 #include "tessellate_footer.h"
 #include "tessellate_options.h"
 #include "tessera/io.h"
@@ -31,6 +32,7 @@ std::string kept(const TessellateOptions& options, const Meshed& made) {
       said += " (except for " + counted(made.patches_without_angle, "patch", "patches") + ")";
   }
   if (options.pixels > 0) said += ", within " + readable(made.pixels, 3) + " pixels in the picture";
+  if (!made.keeps_tolerances) return said + ", more than the tolerance";
   said += made.proven ? ", proven" : ", proven except for fits that are sampled";
   if (options.is_default) said += " (--relative " + readable(default_share) + ", the default)";
   if (options.certified.smallest)
@@ -78,18 +80,23 @@ void add_mesh_facts(Json& object, const TessellateOptions& options, const Meshed
     object["rate_u"] = options.grid->first;
     object["rate_v"] = options.grid->second;
   } else {
-    object["precision"] = options.certified.precision == Precision::double_precision ? "double" : "float";
+    object["precision"] = made.has_doubles ? "double" : "float";
     object["default_relative"] = options.is_default ? Json(default_share) : Json();
     object["bound"] = made.bound;
-    object["certified"] = made.proven;
+    object["certified"] = made.proven && made.keeps_tolerances;
     object["tolerance"] = std::isinf(made.tolerance) ? Json() : Json(made.tolerance);
     object["weld"] = options.certified.weld ? Json(*options.certified.weld) : Json();
     object["gap"] = made.gap;
   }
 }
 
+/// The faults of a mesh with --strict; null without.
+Json faults_json(const TessellateOptions& options, const std::vector<std::string>& faults) {
+  return options.strict ? Json(faults) : Json();
+}
+
 Status report(const Job& job, const TessellateOptions& options, const CommonOptions& common, const Loaded& loaded,
-              const Meshed& made, const Timings& timings) {
+              const Meshed& made, const std::vector<std::string>& faults, const Timings& timings) {
   if (!common.json) return print_report(job.output, report_text(job, options, loaded, made, timings));
   Json object = files_json(loaded);
   object["output"] = job.output;
@@ -107,21 +114,49 @@ Status report(const Job& job, const TessellateOptions& options, const CommonOpti
     object["crossed_surfaces"] = made.crossed.size();
     object["rough_surfaces"] = made.rough.size();
   }
+  if (!options.grid) object["faults"] = faults_json(options, faults);
   add_model_facts(object, loaded, made.patches, made.fit_error);
   add_seconds(object, common, timings);
   return print_report(job.output, object.text() + "\n");
 }
 
-/// Whether a format holds one mesh, and not instances.
-bool is_flat(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension != ".glb" && extension != ".gltf";
+Result<Meshed> make_meshes(const TessellateOptions& options, Loaded& loaded, const std::string& path,
+                           Timings& timings) {
+  if (suits_shapes(options, loaded)) return mesh_shapes(options, loaded, path, timings);
+  if (Status status = add_patches(loaded, options.models, timings); !status.ok()) return status;
+  return mesh_as_one(options, loaded, path, timings);
 }
 
-Result<Meshed> make_meshes(const TessellateOptions& options, Loaded& loaded, bool flat, Timings& timings) {
-  if (suits_shapes(options, loaded)) return mesh_shapes(options, loaded, flat, timings);
-  if (Status status = add_patches(loaded, options.models, timings); !status.ok()) return status;
-  return mesh_as_one(options, loaded, timings);
+/// The options whose limits are known of pieces: these keep angles and pixels, too, but don't tell which.
+TessellateOptions told_of_pieces(TessellateOptions options) {
+  options.certified.angle.reset();
+  options.pixels = 0;
+  return options;
+}
+
+std::string pieces_text(const Job& job, const TessellateOptions& options, const InPieces& result) {
+  const Meshed& made = result.made;
+  return job.output + ": " + counted(result.pieces, "piece") + ", " +
+         counted(made.size.vertices, "vertex", "vertices") + ", " + counted(made.size.triangles, "triangle") +
+         (options.quads ? ", " + counted(made.size.quads, "quad") : "") + kept(told_of_pieces(options), made) + "\n" +
+         fit_line(made.fit_error);
+}
+
+std::string pieces_json(const Job& job, const TessellateOptions& options, const CommonOptions& common,
+                        const InPieces& result, const std::vector<std::string>& faults, const Timings& timings) {
+  const Meshed& made = result.made;
+  Json object = {{"models", job.inputs}, {"failed", Json::array()}};
+  object["output"] = job.output;
+  object["pieces"] = result.pieces;
+  add_mesh_facts(object, options, made);
+  object["surfaces"] = result.surfaces;
+  object["patches"] = made.patches;
+  object["trimmed_surfaces"] = result.trimmed;
+  object["fit_error"] = fit_json(made.fit_error);
+  object["warnings"] = result.warnings;
+  if (!options.grid) object["faults"] = faults_json(options, faults);
+  add_seconds(object, common, timings);
+  return object.text() + "\n";
 }
 
 /// Reads, meshes and writes a model that is larger than memory.
@@ -130,26 +165,12 @@ Status run_in_pieces(const Job& job, const TessellateOptions& options, const Com
   if (!result) return result.status();
   const Meshed& made = result->made;
   say_warnings(result->warnings);
-  TessellateOptions told = options;  // pieces keep angles and pixels, too, but don't tell which
-  told.certified.angle.reset();
-  told.pixels = 0;
-  if (!common.json)
-    return print_report(job.output, job.output + ": " + counted(result->pieces, "piece") + ", " +
-                                        counted(made.size.vertices, "vertex", "vertices") + ", " +
-                                        counted(made.size.triangles, "triangle") +
-                                        (options.quads ? ", " + counted(made.size.quads, "quad") : "") +
-                                        kept(told, made) + "\n" + fit_line(made.fit_error));
-  Json object = {{"models", job.inputs}, {"failed", Json::array()}};
-  object["output"] = job.output;
-  object["pieces"] = result->pieces;
-  add_mesh_facts(object, options, made);
-  object["surfaces"] = result->surfaces;
-  object["patches"] = made.patches;
-  object["trimmed_surfaces"] = result->trimmed;
-  object["fit_error"] = fit_json(made.fit_error);
-  object["warnings"] = result->warnings;
-  add_seconds(object, common, timings);
-  return print_report(job.output, object.text() + "\n");
+  warn_of_rounding(job.output, made);
+  const std::vector<std::string> faults =
+      options.strict ? mesh_faults(result->warnings, made) : std::vector<std::string>();
+  const Status said = print_report(job.output, common.json ? pieces_json(job, options, common, *result, faults, timings)
+                                                           : pieces_text(job, options, *result));
+  return said.ok() ? complain_of(job.output, faults) : said;
 }
 
 /// Names the surfaces whose meshes are not what was wanted.
@@ -171,8 +192,9 @@ Status run_tessellate(const Job& job, const TessellateOptions& options, const Co
   Result<Loaded> loaded = load(job, options.models, allows_shapes(options) ? With::shapes : With::patches, timings);
   if (!loaded) return loaded.status();
   const std::string path = format_path(job.output, options.format);
-  const Result<Meshed> made = make_meshes(options, *loaded, is_flat(path), timings);
+  const Result<Meshed> made = make_meshes(options, *loaded, path, timings);
   if (!made) return made.status();
+  warn_of_rounding(job.output, *made);
   warn_of_surfaces(*loaded, *made);
   {
     const auto phase = timings.phase("write");
@@ -180,7 +202,11 @@ Status run_tessellate(const Job& job, const TessellateOptions& options, const Co
     if (status.ok()) status = out->commit();
     if (!status.ok()) return status;
   }
-  const Status said = report(job, options, common, *loaded, *made, timings);
+  const Result<std::vector<std::string>> faults =
+      options.strict ? mesh_faults(loaded->model, *made) : std::vector<std::string>();
+  if (!faults) return faults.status();
+  Status said = report(job, options, common, *loaded, *made, *faults, timings);
+  if (said.ok()) said = complain_of(job.output, *faults);
   return said.ok() ? loaded->status() : said;
 }
 

@@ -8,15 +8,15 @@
 
 #include "memory.h"
 #include "progress.h"
+#include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {
 
 /// Refuses a mesh that takes more memory than --max-memory, or than most of what is free.
-Status check_memory(const MeshCapacity& mesh, const TessellateOptions& options) {
+Status check_memory(const MeshCapacity& mesh, const TessellateOptions& options, bool has_doubles) {
   // Position, normal and parameters of a vertex in float, and its position in double; the indices and the patch of a
   // triangle, or of half a quad; and writing takes about as much again as the vertices.
-  const bool has_doubles = !options.grid && options.certified.precision == Precision::double_precision;
   const std::uint64_t vertex_bytes = 2 * (32 + (has_doubles ? 24 : 0)), max_bytes = options.max_memory;
   constexpr std::uint64_t triangle_bytes = 16;
   const std::uint64_t triangles = mesh.triangles + 2 * mesh.quads;
@@ -28,6 +28,8 @@ Status check_memory(const MeshCapacity& mesh, const TessellateOptions& options) 
                                          (max_bytes > 0 ? "" : ", three quarters of what is free") +
                                          "; use fewer segments, a tolerance, or --max-memory"};
 }
+
+bool has_doubles(const TessellationOptions& options) { return options.precision == Precision::double_precision; }
 
 Result<Mesh> run_plan(const Tessellation& plan, const PatchSet& set) {
   Result<Mesh> mesh = plan.allocate();
@@ -46,7 +48,7 @@ struct SetUse {
 };
 
 Result<Tessellation> plan_of(const SetUse& use, const TessellationOptions& options) {
-  Result<Tessellation> plan = Tessellation::make(use.set, options);
+  Result<Tessellation> plan = Tessellation::make(use.set, options, {.cancel = &interrupted()});
   if (plan || !options.rates || use.set.cut_count() == 0) return plan;
   return Status(plan.status().code(), plan.status().message() + " (--untrimmed)");
 }
@@ -59,6 +61,7 @@ void add_plan(const Tessellation& plan, const SetUse& use, Meshed& made) {
   made.size.quads += use.count * size.quads;
   made.patches += use.count * use.set.patch_count();
   made.cut_patches += use.count * use.set.cut_count();
+  made.whole_faces += use.count * use.set.trim_faults().size();
   made.fit_error.distance = std::max(made.fit_error.distance, use.stretch * use.set.fit_error().distance);
   made.fit_error.certified &= use.set.fit_error().certified;
   made.welded_borders += use.count * plan.welded_borders();
@@ -137,24 +140,27 @@ double flat_rounding(const Box3& box, double tolerance, Precision precision) {
   return std::ldexp(std::max(max_abs(box.lower), max_abs(box.upper)) + tolerance, -50);
 }
 
-/// Lengths in the model.
-struct Lengths {
-  double tolerance = 0;  ///< infinite: none
-  double rounding = 0;   ///< what flatten() adds to the meshes' bounds
+/// The plan of the file, and what flatten() adds to the meshes' bounds.
+struct ShapesPlan {
+  FilePlan file;
+  double rounding = 0;
 };
 
-Result<Lengths> lengths_of(const TessellationOptions& wanted, const Model& model, std::span<const ShapeSet> shapes,
-                           bool flat) {
-  const Box3 box = box_of(model, shapes);
-  Lengths lengths{.tolerance = std::numeric_limits<double>::infinity()};
-  if (wanted.tolerance) lengths.tolerance = *wanted.tolerance * (wanted.relative ? box.diagonal() : 1);
+Result<ShapesPlan> shapes_plan(const TessellateOptions& options, const Model& model, const Box3& box,
+                               const std::string& path) {
   const bool is_moved = model.instances.size() > 1 || *model.instances[0].placement != Affine();
-  if (flat && is_moved)
-    lengths.rounding = flat_rounding(box, wanted.tolerance ? lengths.tolerance : 0, wanted.precision);
-  if (lengths.tolerance > 2 * lengths.rounding) return lengths;
-  return Status(StatusCode::invalid_argument,
-                "the tolerance " + readable(lengths.tolerance) + " must be above " + readable(2 * lengths.rounding, 2) +
-                    ", the rounding of all instances in one mesh; .glb and .gltf keep a smaller one");
+  ShapesPlan plan{plan_for_file(options, box, path)};
+  const double tolerance = plan.file.tolerance;
+  if (is_flat(path) && is_moved) {
+    const bool has_tolerance = plan.file.options.tolerance.has_value();
+    plan.rounding = flat_rounding(box, has_tolerance ? tolerance : 0, plan.file.options.precision);
+    plan.file = plan_for_file(options, box, path, plan.rounding);
+  }
+  if (tolerance > 2 * plan.rounding) return plan;
+  return Status(StatusCode::invalid_argument, "the tolerance " + readable(tolerance) + " must be above " +
+                                                  readable(2 * plan.rounding, 2) +
+                                                  ", the rounding of all instances in one mesh; .glb and .gltf keep a "
+                                                  "smaller one");
 }
 
 /// "shape 2 (nut): ...", if there are several.
@@ -168,8 +174,8 @@ Status in_shape(const Model& model, std::size_t k, const Status& status) {
 /// Meshes shapes one after the other.
 class ShapeMesher {
  public:
-  ShapeMesher(const TessellateOptions& options, const Lengths& lengths, bool flat, Meshed& made)
-      : options_(options), lengths_(lengths), flat_(flat), made_(made) {}
+  ShapeMesher(const TessellateOptions& options, const FilePlan& plan, bool flat, Meshed& made)
+      : options_(options), plan_(plan), flat_(flat), made_(made) {}
 
   Status add(const Model& model, std::size_t k, const ShapeSet& shape) {
     if (!shape.set) return {};
@@ -191,9 +197,9 @@ class ShapeMesher {
  private:
   /// Lengths of the model become lengths of the shape.
   TessellationOptions options_in(const ShapeSet& shape) const {
-    TessellationOptions options = plan_options(options_);
+    TessellationOptions options = plan_.options;
     const double stretch = shape.stretch > 0 ? shape.stretch : 1;
-    if (options.tolerance) options.tolerance = (lengths_.tolerance - lengths_.rounding) / stretch;
+    if (options.tolerance) options.tolerance = *options.tolerance / stretch;
     options.relative = false;
     if (options.weld) options.weld = *options.weld / stretch;
     if (options.max_gap) options.max_gap = *options.max_gap / stretch;
@@ -211,11 +217,11 @@ class ShapeMesher {
       return {StatusCode::invalid_argument, "the meshes of all shapes up to here take " +
                                                 counted(triangles_, "triangle") + ", the limit is " +
                                                 std::to_string(options_.certified.max_triangles)};
-    return check_memory(memory_, options_);
+    return check_memory(memory_, options_, has_doubles(plan_.options));
   }
 
   const TessellateOptions& options_;
-  const Lengths& lengths_;
+  const FilePlan& plan_;
   bool flat_;
   Meshed& made_;
   MeshCapacity memory_;
@@ -251,17 +257,42 @@ bool suits_shapes(const TessellateOptions& options, const Loaded& loaded) {
          std::ranges::all_of(loaded.model.instances, [](const Instance& one) { return is_even(*one.placement); });
 }
 
-Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, Timings& timings) {
+bool is_flat(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension != ".glb" && extension != ".gltf";
+}
+
+void add_file(const FilePlan& plan, const TessellateOptions& options, const Box3& box, Meshed& made) {
+  made.rounding += plan.rounding;
+  made.bound += plan.rounding;
+  made.tolerance = plan.tolerance;
+  made.has_doubles = has_doubles(plan.options) || plan.has_double_sums;
+  if (options.pixels > 0) made.pixels += pixels_of_length(options.view, box, plan.rounding);
+  made.keeps_tolerances = !(made.bound > made.tolerance) && !(options.pixels > 0 && made.pixels > options.pixels);
+}
+
+void warn_of_rounding(const std::string& output, const Meshed& made) {
+  if (made.keeps_tolerances) return;
+  warn(output + ": floats of this file move vertices by up to " + readable(made.rounding, 3) +
+       " because the model lies far from zero, so it does not keep the tolerance; .glb does, and .ply and .obj with "
+       "positions in double");
+}
+
+Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, const std::string& path,
+                           Timings& timings) {
   const Result<PatchSet> set = pack_faces(loaded, options.models, timings);
   if (!set) return set.status();
   const auto phase = timings.phase("evaluate");
   const SetUse use{.set = *set};
-  const Result<Tessellation> plan = plan_of(use, plan_options(options));
+  const FilePlan file = plan_for_file(options, set->model_box(), path);
+  const Result<Tessellation> plan = plan_of(use, file.options);
   if (!plan) return in_file(loaded.files[0], plan.status());
   Meshed made;
   add_plan(*plan, use, made);
-  made.tolerance = plan->tolerance();
-  if (const Status status = check_memory(made.size, options); !status.ok()) return in_file(loaded.files[0], status);
+  add_file(file, options, set->model_box(), made);
+  if (options.certified.smallest) made.tolerance = plan->tolerance();
+  if (const Status status = check_memory(made.size, options, has_doubles(file.options)); !status.ok())
+    return in_file(loaded.files[0], status);
   Result<Mesh> mesh = run_plan(*plan, *set);
   if (!mesh) return in_file(loaded.files[0], mesh.status());
   if (!options.grid)
@@ -274,7 +305,8 @@ Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loade
   return made;
 }
 
-Result<Meshed> mesh_shapes(const TessellateOptions& options, const Loaded& loaded, bool flat, Timings& timings) {
+Result<Meshed> mesh_shapes(const TessellateOptions& options, const Loaded& loaded, const std::string& path,
+                           Timings& timings) {
   const Model& model = loaded.model;
   const Result<std::vector<ShapeSet>> shapes = pack_shapes(options, loaded, timings);
   if (!shapes) return shapes.status();
@@ -283,13 +315,14 @@ Result<Meshed> mesh_shapes(const TessellateOptions& options, const Loaded& loade
   if (!assembly) return in_file(loaded.files[0], assembly.status());
   Meshed made{.assembly = *std::move(assembly), .by_shapes = true};
   const Status status = [&]() -> Status {
-    const Result<Lengths> lengths = lengths_of(plan_options(options), model, *shapes, flat);
-    if (!lengths) return lengths.status();
-    ShapeMesher mesher(options, *lengths, flat, made);
+    const Box3 box = box_of(model, *shapes);
+    const Result<ShapesPlan> plan = shapes_plan(options, model, box, path);
+    if (!plan) return plan.status();
+    ShapeMesher mesher(options, plan->file, is_flat(path), made);
     for (std::size_t k = 0; k < shapes->size(); ++k)
       if (const Status added = mesher.add(model, k, (*shapes)[k]); !added.ok()) return in_shape(model, k, added);
-    made.bound += lengths->rounding;
-    made.tolerance = lengths->tolerance;
+    made.bound += plan->rounding;
+    add_file(plan->file, options, box, made);
     return {};
   }();
   if (!status.ok()) return in_file(loaded.files[0], status);

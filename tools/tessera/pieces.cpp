@@ -1,5 +1,9 @@
 #include "pieces.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -177,9 +181,10 @@ Result<std::vector<PartOutline>> find_pieces(const SurfaceSource& source, const 
 
 /// Meshes one piece after the other.
 Status write_pieces(const SurfaceSource& source, std::span<const PartOutline> outlines,
-                    const TessellateOptions& options, PieceWriter& writer, Meshed& made, Timings& timings) {
+                    const TessellateOptions& options, const FilePlan& plan, PieceWriter& writer, Meshed& made,
+                    Timings& timings) {
   for (std::size_t k = 0; k < outlines.size(); ++k) {
-    const Result<PartMesh> piece = [&]() -> Result<PartMesh> {
+    Result<PartMesh> piece = [&]() -> Result<PartMesh> {
       const Result<ModelPart> part = [&] {
         const auto phase = timings.phase("read");
         return load_part(source, outlines[k]);
@@ -187,9 +192,10 @@ Status write_pieces(const SurfaceSource& source, std::span<const PartOutline> ou
       if (!part) return part.status();
       const auto phase = timings.phase("evaluate");
       Progress progress("piece " + std::to_string(k + 1) + " of " + std::to_string(outlines.size()));
-      return tessellate_part(*part, plan_options(options), progress.execution(), options.models.fit);
+      return tessellate_part(*part, plan.options, progress.execution(), options.models.fit);
     }();
     if (!piece) return piece.status();
+    if (plan.has_double_sums) add_double_sums(piece->mesh);
     add_piece(*piece, made);
     const std::uint64_t triangles = made.size.triangles + 2 * made.size.quads;
     if (!options.grid && triangles > options.certified.max_triangles)
@@ -203,13 +209,21 @@ Status write_pieces(const SurfaceSource& source, std::span<const PartOutline> ou
   return writer.end();
 }
 
+/// Makes all threads share one heap. Each piece finds its neighbours on a thread of its own; glibc would keep what these
+/// have freed in up to eight heaps per processor: 95 MB instead of 23 MB for 27 pieces of 8 MB.
+void share_heap() {
+#ifdef __GLIBC__
+  ::mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 }  // namespace
 
 void add_in_pieces(Command& command, TessellateOptions& options) {
   Option& pieces = command.add(
       "--in-pieces", "SIZE",
       "For models larger than memory: read a .bpt or .g2 file, and write .ply or .pvtp, in pieces that take about this "
-      "much memory, like 2G",
+      "much memory, like 2G; the program takes about 16M beside, and 0.2M per piece",
       [&options](const std::string& text) { options.piece_bytes = parse_bytes("--in-pieces", text); });
   for (const char* const other :
        {"--triangles", "--fewest", "--max-memory", "--crease", "--share-vertices", "--input-format", "--format"})
@@ -233,6 +247,7 @@ void check_pieces(const TessellateOptions& options, const Plan& plan) {
 }
 
 Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options, Timings& timings) {
+  share_heap();
   Result<PieceWriter> writer = PieceWriter::make(job.output);
   if (!writer) return writer.status();
   const Result<SurfaceFile> file = [&] {
@@ -254,10 +269,11 @@ Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options
     reader.counting = false;
     if (!outlines) return outlines.status();
     result.made.fit_error = outlines->front().fit_error;
-    if (options.certified.tolerance)
-      result.made.tolerance =
-          *options.certified.tolerance * (options.certified.relative ? outlines->front().box.diagonal() : 1);
-    return write_pieces(reader.source(), *outlines, options, *writer, result.made, timings);
+    const Box3& box = outlines->front().box;
+    const FilePlan plan = plan_for_file(options, box, job.output);
+    const Status written = write_pieces(reader.source(), *outlines, options, plan, *writer, result.made, timings);
+    add_file(plan, options, box, result.made);
+    return written;
   }();
   if (!status.ok())
     return status.message().find(job.inputs[0]) == std::string::npos ? in_file(job.inputs[0], status) : status;

@@ -68,8 +68,9 @@ void add_precision(Command& command, TessellateOptions& options) {
   command
       .add_choice("--precision", {"float", "double"},
                   "Precision of positions; double (.ply and .obj) keeps a small tolerance for parts far from each "
-                  "other [float]",
+                  "other [float; .ply and .obj: double where float takes a sixteenth of the tolerance]",
                   [&options](const std::string& text) {
+                    options.has_precision = true;
                     options.certified.precision =
                         text == "double" ? Precision::double_precision : Precision::single_precision;
                   })
@@ -158,6 +159,13 @@ void add_mesh_options(Command& command, TessellateOptions& options) {
   add_sharing(command, options);
   command.add_flag("--quads", "Write whole cells as quads, in .obj and .ply [triangles only]", options.quads);
   add_precision(command, options);
+  command
+      .add_flag(
+          "--strict",
+          "Exit with status 1, after the mesh is written, if a part of the file is left out, a closed shape's mesh "
+          "is open, or a bound is not proven; not for --grid",
+          options.strict)
+      .exclude(command.option("--grid"));
 }
 
 }  // namespace tessera::cli

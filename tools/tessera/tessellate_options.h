@@ -25,7 +25,9 @@ struct TessellateOptions {
   std::uint64_t max_memory = 0;   ///< bytes of the mesh; 0: a share of what is free
   std::uint64_t piece_bytes = 0;  ///< memory of a piece; 0: the model is meshed as a whole
   bool quads = false;
-  double pixels = 0;  ///< above 0 if requested
+  bool strict = false;         ///< whether faults of the mesh are errors
+  bool has_precision = false;  ///< whether the user has chosen that of positions
+  double pixels = 0;           ///< above 0 if requested
   View view;
 };
 

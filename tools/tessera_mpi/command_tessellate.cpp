@@ -145,14 +145,18 @@ Status mesh_together(const Job& job, const TessellateOptions& options, const Com
   Result<ModelPart> part = reads_runs(job.inputs[0]) ? part_of_file(job, options, transport)
                                                      : part_of_whole(job, options, timings, transport);
   if (Status status = transport.agree(part.status()); !status.ok()) return status;
-  const Result<PartMesh> own = [&] {
+  const FilePlan plan = plan_for_file(options, part->box, job.output);
+  Result<PartMesh> own = [&] {
     const auto phase = timings.phase("mesh");
-    return tessellate_part(*part, options.certified, {}, options.models.fit);
+    return tessellate_part(*part, plan.options, {}, options.models.fit);
   }();
-  const Result<PartSums> sums = sum_parts(own, options.certified, transport);
+  if (own && plan.has_double_sums) add_double_sums(own->mesh);
+  Result<PartSums> sums = sum_parts(own, plan.options, transport);
   if (!sums) return sums.status();
+  sums->bound += plan.rounding;
   const auto phase = timings.phase("write");
-  const MeshTotals totals = totals_of(*sums, options.certified.precision == Precision::double_precision);
+  const MeshTotals totals =
+      totals_of(*sums, plan.has_double_sums || plan.options.precision == Precision::double_precision);
   Status status = is_ply(job.output) ? write_ply(*own, *sums, totals, *out, team)
                                      : write_vtp(*own, *sums, totals, job.output, team);
   if (status.ok() && team.leads() && is_ply(job.output)) status = out->commit();
