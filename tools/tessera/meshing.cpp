@@ -271,8 +271,10 @@ void add_file(const FilePlan& plan, const TessellateOptions& options, const Box3
   made.keeps_tolerances = !(made.bound > made.tolerance) && !(options.pixels > 0 && made.pixels > options.pixels);
 }
 
+bool is_too_coarse(const Meshed& made) { return !made.keeps_tolerances && made.rough.empty(); }
+
 void warn_of_rounding(const std::string& output, const Meshed& made) {
-  if (made.keeps_tolerances) return;
+  if (!is_too_coarse(made)) return;
   warn(output + ": floats of this file move vertices by up to " + readable(made.rounding, 3) +
        " because the model lies far from zero, so it does not keep the tolerance; .glb does, and .ply and .obj with "
        "positions in double");

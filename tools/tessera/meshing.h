@@ -39,7 +39,7 @@ struct Meshed {
   double bound = 0;              ///< largest distance of the file's mesh and surfaces; 0: unknown
   double rounding = 0;           ///< the part of the bound that comes from the numbers of the file
   bool has_doubles = false;      ///< whether the file holds positions in double
-  bool keeps_tolerances = true;  ///< false: the file's numbers are too coarse for them
+  bool keeps_tolerances = true;  ///< false: the file's numbers are too coarse for them, or loops too rough
   double gap = 0;                ///< by which faces of the file fail to meet, beside the bound
   bool proven = true;            ///< false if sampled: callables fitted without bounds on their derivatives
 };
@@ -57,6 +57,8 @@ bool is_flat(const std::filesystem::path& path);
 
 /// Adds what a file adds to the bounds of a mesh, and tells whether these still keep the tolerances.
 void add_file(const FilePlan& plan, const TessellateOptions& options, const Box3& box, Meshed& made);
+/// Whether the numbers of the file are too coarse for the tolerances.
+bool is_too_coarse(const Meshed& made);
 /// Warns that the numbers of a file are too coarse for the tolerances, if they are.
 void warn_of_rounding(const std::string& output, const Meshed& made);
 

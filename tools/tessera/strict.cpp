@@ -51,7 +51,7 @@ std::vector<std::string> mesh_faults(const std::vector<std::string>& warnings, c
   if (!made.rough.empty())
     faults.push_back(counted(made.rough.size(), "surface") + " beyond the tolerance, because loops are too rough");
   if (!made.proven) faults.push_back("the bound is sampled, not proven");
-  if (!made.keeps_tolerances) faults.push_back("the numbers of the file are too coarse for the tolerance");
+  if (is_too_coarse(made)) faults.push_back("the numbers of the file are too coarse for the tolerance");
   if (made.patches_without_angle > 0)
     faults.push_back(counted(made.patches_without_angle, "patch", "patches") + " without a proven angle");
   return faults;
