@@ -173,7 +173,10 @@ class Followed {
   /// A plan that divides each patch as a new one would is the new one, unless it keeps borders that were joined.
   void compare_with_new_plan() {
     const Result<Tessellation> fresh = Tessellation::make(set_, options_);
-    ASSERT_TRUE(fresh.ok()) << fresh.status().message();
+    if (!fresh) {  // kept segments may have fewer triangles than new ones
+      EXPECT_NE(fresh.status().message().find("the limits are"), std::string::npos) << fresh.status().message();
+      return;
+    }
     if (!stays_together_ || plan_->welded_borders() + fresh->welded_borders() > 0) return;
     const CertifiedPlan &ours = proven_mesh_of(*plan_).plan(), &theirs = proven_mesh_of(*fresh).plan();
     const bool has_f64 =
