@@ -46,9 +46,11 @@ std::string assembly_text(const ScratchFolder& folder) {
   return content_of(folder / "both.step");
 }
 
-/// Entities from #90001 on that colour an item red within a context.
+/// Entities from #90001 on that colour an item red, if there is a context in it alone.
 std::string red_style(const std::string& item, const std::string& context) {
-  return "#90001=STYLED_ITEM('',(#90002)," + item + ");\n#90002=PRESENTATION_STYLE_BY_CONTEXT((#90003)," + context +
+  return "#90001=STYLED_ITEM('',(#90002)," + item + ");\n#90002=" +
+         (context.empty() ? "PRESENTATION_STYLE_ASSIGNMENT((#90003)"
+                          : "PRESENTATION_STYLE_BY_CONTEXT((#90003)," + context) +
          ");\n#90003=SURFACE_STYLE_USAGE(.BOTH.,#90004);\n#90004=SURFACE_SIDE_STYLE('',(#90005));\n"
          "#90005=SURFACE_STYLE_FILL_AREA(#90006);\n#90006=FILL_AREA_STYLE('',(#90007));\n"
          "#90007=FILL_AREA_STYLE_COLOUR('',#90008);\n#90008=DRAUGHTING_PRE_DEFINED_COLOUR('red');\n";
@@ -150,6 +152,30 @@ TEST(Instances, KeepTheScalesAndMirrorsOfMappedItems) {
     EXPECT_NEAR(lowest_x, 5, 1e-5);
     EXPECT_NEAR(lowest_y, c.lowest_y, 1e-5);
   }
+}
+
+TEST(Instances, OfMappedItemsHaveColoursOfTheirOwn) {
+  const ScratchFolder folder;
+  std::string step = mapped_text(folder,
+                                 "#90003=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',$,$,$,#90004,1.,$);\n"
+                                 "#90004=CARTESIAN_POINT('',(5.,0.,0.));\n");
+  const std::string items = "SHAPE_REPRESENTATION('',(#90002)";
+  step.replace(step.find(items), items.size(), "SHAPE_REPRESENTATION('',(#90002,#90022)");
+  insert(step,
+         "#90022=MAPPED_ITEM('',#90001,#90023);\n#90024=CARTESIAN_POINT('',(9.,0.,0.));\n"
+         "#90023=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',$,$,$,#90024,1.,$);\n");
+  std::string style = red_style("#90022", "");
+  for (int k = 1; k <= 8; ++k) {  // numbers that are free
+    const std::string given = "#9000" + std::to_string(k), free = "#9010" + std::to_string(k);
+    for (std::size_t at = style.find(given); at != std::string::npos; at = style.find(given))
+      style.replace(at, given.size(), free);
+  }
+  insert(step, style);
+  const Model model = value_of(read_cad(folder.file("coloured.step", step)));
+  ASSERT_EQ(model.instances.size(), 2u);
+  EXPECT_EQ(model.instances[0].placement->point({}).x, 5);
+  EXPECT_EQ(red_faces(model.shapes[model.instances[0].shape]), 0u);
+  EXPECT_EQ(red_faces(model.shapes[model.instances[1].shape]), 6u);
 }
 
 TEST(Names, OfLatin1AndGbkBecomeUtf8) {

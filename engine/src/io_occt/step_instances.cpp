@@ -40,7 +40,8 @@ namespace {
 using opencascade::handle;
 using Entity = handle<Standard_Transient>;
 
-/// The contexts, such as one instance, to which a style is limited; empty for a style of an item wherever it stands.
+/// The contexts, such as one instance, to which a style is limited; empty for a style of an item wherever it stands. A
+/// mapped item is an instance itself.
 std::vector<Entity> contexts_of(const StepVisual_StyledItem& style) {
   std::vector<Entity> contexts;
   for (int k = 1; k <= style.NbStyles(); ++k)
@@ -48,6 +49,7 @@ std::vector<Entity> contexts_of(const StepVisual_StyledItem& style) {
       contexts.push_back(limited->StyleContext().Value());
   if (const auto* const over = dynamic_cast<const StepVisual_ContextDependentOverRidingStyledItem*>(&style))
     for (int k = 1; k <= over->NbStyleContext(); ++k) contexts.push_back(over->StyleContextValue(k).Value());
+  if (contexts.empty() && style.Item()->IsKind(STANDARD_TYPE(StepRepr_MappedItem))) contexts.push_back(style.Item());
   return contexts;
 }
 
