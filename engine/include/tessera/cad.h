@@ -14,14 +14,19 @@
 // - The domain is the face's rectangle of parameters, which may be a part of the knots' domain.
 // - A face whose edges run inside that rectangle is trimmed. Its trims hold its loops: the edges' own splines wherever
 //   the parameters are the file's, else curves within 1e-9 of the range. If they can't be read, the face is taken as
-//   untrimmed, and a warning names it.
+//   untrimmed, and a warning names it. INTERNAL and EXTERNAL edges trim nothing.
+// - Curves that leave the surface by less than the tolerances of their face follow its side there.
 // - A face that the file reverses has u and v swapped, so that normals of solids point outwards.
-// - `placement` is the face's place in the assembly; `name` is the product's (STEP), the entity's (IGES) or empty
-//   (BREP).
-// - `colour` is that of the face, or else of the shell, solid or part that holds it, in STEP and IGES. Colours of
-//   single instances in STEP are left out.
+// - `placement` is the face's place in the assembly, with the scales and mirrors of STEP's mapped items; `name` is the
+//   product's (STEP), the entity's (IGES) or empty (BREP).
+// - `colour` is that of the face, or else of the shell, solid or part that holds it, in STEP and IGES. An
+//   instance of STEP with colours of its own has a shape of its own. Styles of other contexts are left out, with a
+//   warning.
+// - Texts are UTF-8. A file in GBK or Latin-1 is told by its bytes, with a warning.
 // - A face that can't be read is left out, and a warning says why: degrees above max_degree, an unbounded plane, input
 //   that OpenCASCADE rejects (such as weights that are not positive).
+// - Shapes of STEP that are not read, such as tessellations and CSG, are counted by kind: in a warning, or in the error
+//   if the file holds nothing else.
 //
 // Shapes: each part that stands at several places is read once and has an instance for each place. A part is as much of
 // the file as stands together at each of its places: a product of STEP that is no assembly; in other files, all that no
