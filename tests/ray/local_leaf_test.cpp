@@ -11,6 +11,9 @@
 #include <new>
 #include <vector>
 
+#include "base/impl_access.h"
+#include "ray/scene/exact_source.h"
+#include "ray/scene/ray_scene_impl.h"
 #include "ray_support.h"
 #include "support/errors.h"
 #include "support/random_patches.h"
@@ -210,6 +213,23 @@ TEST(LocalLeaf, HitsNextToHeavyCornersAreOnTheRay) {
     if (hit.kind != HitKind::hit) continue;
     const Vec3 point = de_casteljau(heavy->patches[hit.patch], hit.patch_u, hit.patch_v);
     ASSERT_LE(test::distance_from_line(point, ray), 2e-12 * size) << "ray " << k;
+  }
+}
+
+/// A scene that does not follow edits keeps nothing of a piece but its place and its float net.
+TEST(LocalLeaf, MemoryOfAPiece) {
+  Random random(34);
+  std::vector<BezierPatch> patches;
+  for (int k = 0; k < 64; ++k) patches.push_back(test::polynomial(3, 3, hilly_points(random, 3, 3, 0.3)));
+  const PatchSet set = test::set_of(patches);
+  for (const bool follows : {false, true}) {
+    const RayScene scene = test::value_of(RayScene::make(set, {.editable = follows}));
+    const LeafNets& nets = *impl_of(scene).exact_source()->tracer().nets;
+    const std::size_t pieces = nets.leaves().size(), box = follows ? sizeof(Box3) : 0;
+    EXPECT_GT(pieces, 4 * patches.size());
+    EXPECT_EQ(nets.boxes().size(), follows ? pieces : 0);
+    EXPECT_EQ(nets.memory_bytes(), pieces * (sizeof(Leaf) + kernel::ray_leaf_bytes(false) + box));
+    EXPECT_LE(scene.memory_bytes(), pieces * 800);
   }
 }
 

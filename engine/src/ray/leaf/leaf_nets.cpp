@@ -137,14 +137,6 @@ void LeafNets::write_net(const SetView& set, const Leaf& leaf, double* net, doub
   take(false, leaf.halvings_v, leaf.v0, leaf.dv);
 }
 
-Box3 LeafNets::box(const SetView& set, std::size_t leaf) const {
-  if (!boxes_.empty()) return boxes_[leaf];
-  const Leaf& of = leaves_[leaf];
-  std::vector<double> nets(2 * static_cast<std::size_t>(of.size() * of.components()));
-  write_net(set, of, nets.data(), nets.data() + nets.size() / 2);
-  return box_of(of, nets.data());
-}
-
 Status LeafNets::make(const SetView& set, const Execution& execution) {
   boxes_.resize(leaves_.size());
   local_.resize(leaves_.size() * local_bytes_);

@@ -67,9 +67,7 @@ class LeafNets {
   /// Returns the boxes of the control points, one per leaf, until they are dropped. A piece lies in its box except for
   /// rounding.
   std::span<const Box3> boxes() const { return boxes_; }
-  void drop_boxes() { boxes_ = {}; }
-  /// Returns the box of one leaf, whether they are dropped or not. `set`: as it was built from.
-  Box3 box(const SetView& set, std::size_t leaf) const;
+  void drop_boxes() { boxes_ = std::vector<Box3>(); }  // a list in braces would keep the memory
   /// Writes the piece's part of write_patch(). `other`, of the same size, is overwritten. `set`: as it was built from.
   void write_net(const SetView& set, const Leaf& leaf, double* net, double* other) const;
   const SceneFrame& frame() const { return frame_; }
