@@ -18,7 +18,6 @@
 #include <string>
 #include <utility>
 
-#include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "tess/edges/side_curve.h"
 #include "tess/plan/certified_plan.h"
@@ -129,7 +128,9 @@ double CertifiedPlanner::bound_cut(const CutRoom& room, const CutPatch& cut, Cer
 void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
   const EdgeDirections directions = edge_directions();
   const std::span<const PatchShape> shapes = divided_shapes();
-  for (CutPatch& cut : plan.rare_->cuts) {
+  for (std::size_t c = 0; c < plan.rare_->cuts.size(); ++c) {
+    CutPatch& cut = plan.rare_->cuts[c];
+    cut.patch = set_->trims->cuts[c].patch;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(cut.patch, side);
       if (edge == SharedEdges::none) continue;
@@ -178,7 +179,8 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
   maker.make(set_->trims->regions[cut.region], face_sides_[cut.region], cut, room.limits,
              plan.divisions_[cut.patch].border, divided_shapes()[cut.patch].collapsed, chord(cut.patch),
              plan.rare_->cuts[c]);
-  return bound_cut(room, plan.rare_->cuts[c], plan);
+  const bool has_too_many = plan.rare_->cuts[c].has_too_many;
+  return has_too_many ? std::numeric_limits<double>::infinity() : bound_cut(room, plan.rare_->cuts[c], plan);
 }
 
 Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, std::optional<EdgeStops>& stops,
@@ -188,7 +190,6 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   plan.rare_->trims = set_->trims;
   plan.rare_->cuts.resize(cuts.size());
   plan.rare_->crossed.clear(), plan.rare_->beyond.clear();
-  for (std::size_t c = 0; c < cuts.size(); ++c) plan.rare_->cuts[c].patch = cuts[c].patch;
   find_same_borders(plan);
   const std::vector<std::uint8_t> is_shared = shared_edges();
   CutShares shares(cuts.size(), cell_share, request.cut_shares);
@@ -202,19 +203,16 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     if (runs_)
       if (Status status = find_stops(*rooms, plan, stops.emplace(*runs_, same_share(request)), execution); !status.ok())
         return status;
-    LeastIndex full;
     const auto cut_some = [&](std::size_t begin, std::size_t end) {
       CutPatchMaker maker;
-      for (std::size_t c = begin; c < end; ++c) {
-        if (!shares.is_due(c) && before[cuts[c].patch] == plan.divisions_[cuts[c].patch]) continue;
-        excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared, execution.cancel}, maker, plan);
-        if (plan.rare_->cuts[c].has_too_many) full.add(c);
-      }
+      for (std::size_t c = begin; c < end; ++c)
+        if (shares.is_due(c) || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
+          excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared, execution.cancel}, maker, plan);
     };
     const Execution quiet{.cancel = execution.cancel};
     if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
-    if (full.found()) return too_many(request, cuts[full.index()].patch);
     for (std::size_t c = 0; c < cuts.size(); ++c) {
+      if (plan.cuts()[c].has_too_many) return too_many(request, cuts[c].patch);
       if (!(plan.cuts()[c].sliver < request.tolerance))
         shares.settle(c);  // smaller cells leave the slivers as they are
       shares.take(c, excess[c]);
