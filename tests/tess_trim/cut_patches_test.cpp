@@ -118,13 +118,14 @@ TEST(CutPatches, OfLoopsThatCrossThemselvesStayCoarse) {
 std::vector<TrimLoop> random_rings(std::mt19937& random, const Place& at) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<TrimLoop> all;
-  const unsigned count = 1 + random() % 3;
-  for (unsigned k = 0; k < count; ++k) {
+  const std::size_t count = 1 + random() % 3;
+  for (std::size_t k = 0; k < count; ++k) {
     std::vector<ParameterPoint> ring;
-    const unsigned corners = 3 + random() % 20;
+    const std::size_t corners = 3 + random() % 20;
     const double u = uniform(random), v = uniform(random), ru = std::pow(uniform(random), 3), rv = uniform(random);
-    for (unsigned c = 0; c < corners; ++c) {
-      const double angle = 2 * std::numbers::pi * c / corners, r = 0.3 + 0.7 * uniform(random);
+    for (std::size_t c = 0; c < corners; ++c) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(c) / static_cast<double>(corners),
+                   r = 0.3 + 0.7 * uniform(random);
       ring.push_back(
           at(std::clamp(u + ru * r * std::cos(angle), 0.0, 1.0), std::clamp(v + rv * r * std::sin(angle), 0.0, 1.0)));
     }
