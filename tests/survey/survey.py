@@ -141,6 +141,9 @@ def main(arguments: list[str]) -> int:
         where = options.folder or "TESSERA_TEST_DATA, which is not set"
         print(f"skipped: there is no corpus of CAD files with a truth.json ({where})")
         return SKIPPED
+    if not os.access(options.tool, os.X_OK):
+        print(f"{options.tool}: expected a program, found none")
+        return 2
     truths = json.loads((options.folder / "truth.json").read_text(encoding="utf-8"))
     began = time.monotonic()
     runs, faults = survey(truths, options)

@@ -16,6 +16,12 @@ Vec3 reach_of(const Box3& box, double distance) {
   return 0.5 * (box.upper - box.lower) + Vec3{distance, distance, distance};
 }
 
+/// Whether a model lies farther from zero than four times its size. Nearer models have no tolerance that floats relative
+/// to their middle keep and floats of a file do not.
+bool is_far(const Box3& box) {
+  return std::max(max_abs(box.lower), max_abs(box.upper)) > 4 * max_abs(0.5 * (box.upper - box.lower));
+}
+
 bool can_hold_doubles(const std::string& path) {
   const std::string extension = lower_extension(path);
   return extension == ".obj" || extension == ".ply" || extension == ".pvtp";
@@ -41,7 +47,7 @@ FilePlan plan_for_file(const TessellateOptions& options, const Box3& box, const 
     return file_rounding(file, box.centre(), reach, wanted.precision == Precision::double_precision);
   };
   // .stl holds floats always, so it tells what floats take.
-  if (can_hold_doubles(path) && !options.has_precision && rounding(".stl") > plan.tolerance / 16)
+  if (can_hold_doubles(path) && !options.has_precision && is_far(box) && rounding(".stl") > plan.tolerance / 16)
     wanted.precision = Precision::double_precision;
   plan.rounding = rounding(path);
   plan.has_double_sums =

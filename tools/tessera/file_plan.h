@@ -19,8 +19,8 @@ struct FilePlan {
 
 /// Returns the options for a model in this box, of which `moved` is what other steps add to the bound.
 ///
-/// Where floats of the file would take more than a sixteenth of the tolerance, .obj, .ply and .pvtp get positions in
-/// double, unless the user has chosen. All others get a mesh within the tolerance without the rounding, if the rounding
+/// Far from zero, where floats of the file would take more than a sixteenth of the tolerance, .obj, .ply and .pvtp get
+/// positions in double, unless the user has chosen. All others get a mesh within the tolerance without the rounding, if the rounding
 /// leaves half of it; otherwise the bound of the file is larger than the tolerance.
 FilePlan plan_for_file(const TessellateOptions& options, const Box3& box, const std::string& path, double moved = 0);
 

@@ -68,7 +68,7 @@ void add_precision(Command& command, TessellateOptions& options) {
   command
       .add_choice("--precision", {"float", "double"},
                   "Precision of positions; double (.ply and .obj) keeps a small tolerance for parts far from each "
-                  "other [float; .ply and .obj: double where float takes a sixteenth of the tolerance]",
+                  "other [float; .ply and .obj far from zero: double where float takes a sixteenth of the tolerance]",
                   [&options](const std::string& text) {
                     options.has_precision = true;
                     options.certified.precision =
