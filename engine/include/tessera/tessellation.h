@@ -74,7 +74,8 @@ struct TessellationOptions {
   ///
   /// There is no bound where the normal has no direction (at a cusp, or at a corner with parallel tangents), and hardly
   /// one where it turns at a rate of more than 32 radians over a patch. Such a patch gets at least `angle_rate`
-  /// segments along each parameter instead and counts in patches_without_angle(). Poles have bounds.
+  /// segments along each parameter instead and counts in patches_without_angle(). Poles have bounds. A short border
+  /// that welding makes a point need not have one: then the patch is divided as one with a pole, and counts as well.
   std::optional<double> angle = {};
   int angle_rate = 64;                        ///< segments of patches without an angle bound, 1 to 4096
   std::optional<PixelTolerance> pixels = {};  ///< a tolerance in a camera's picture
@@ -214,7 +215,8 @@ struct MeshChange {
 /// - Not joined: rational curves of one shape whose parameters run at different speeds; one long border and two short
 ///   ones.
 /// - Corners of joined borders become one corner.
-/// - Borders whose control points lie in a box no larger than the weld become points, as collapsed ones are.
+/// - Borders whose control points lie in a box no larger than the weld become points, as collapsed ones are. Those of a
+///   needle, which would vanish by it, do not, unless a neighbour with triangles has one of its long borders.
 /// - The bounds include how far vertices are moved.
 ///
 /// Trimming loops: of a patch that they cut, the mesh shows what an odd number of them encloses.
@@ -289,7 +291,7 @@ class Tessellation {
   std::span<const float> bounds() const;
   /// Returns the proven angle, radians: the largest of the patches that have a bound. 0 if no angle was set.
   double angle() const;
-  std::size_t patches_without_angle() const;  ///< how many have angle_rate segments instead of a bound
+  std::size_t patches_without_angle() const;  ///< how many have no bound
   /// Returns the proven angle of each patch, infinite where there is none; empty if no angle was set.
   std::span<const float> angles() const;
   /// Returns the proven distance in the picture, in pixels. 0 if pixels were not set.
@@ -348,7 +350,8 @@ class Tessellation {
   ///
   /// A patch keeps its segments as `spare` says; if any patch does not, or collapses other borders, the topology has
   /// changed. Borders stay joined as they were when the topology was last made: where edits move apart borders of the
-  /// same bits, so is the mesh, and borders that edits bring together are joined by a new plan only.
+  /// same bits, so is the mesh, and borders that edits bring together are joined by a new plan only. A topology that is
+  /// made when borders have moved apart joins those that are the same bits then.
   ///
   /// The set and the views get the same bytes as from PatchSet::set_control_points() for each edit and run(), for any
   /// number of threads. The revision grows by one, unless there is no edit.

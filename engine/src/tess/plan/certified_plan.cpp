@@ -19,6 +19,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
+constexpr double no_angle = std::numeric_limits<double>::infinity();
 
 /// Whether the kept segments of a patch are few enough compared with the best.
 bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
