@@ -74,14 +74,14 @@ class ModelOfParts {
 
   Status nothing() {
     const std::vector<std::string>& left_out = shortcomings_.left_out;
-    if (left_out.empty()) {
-      const std::string& contents = file_.contents;
+    const std::string& contents = file_.contents;
+    if (left_out.empty())
       return Status(StatusCode::parse_error,
                     path_ + ": it holds no surfaces" + (contents.empty() ? "" : " (" + contents + ")"));
-    }
     const std::size_t more = left_out.size() - 1;
     const std::string others = more == 0 ? "" : " (and " + counted(more, "message") + " more)";
-    return Status(shortcomings_.first_code, path_ + ": no surface can be read: " + left_out[0] + others);
+    return Status(shortcomings_.first_code, path_ + ": no surface can be read: " + left_out[0] + others +
+                                                (contents.empty() ? "" : "; the file holds " + contents));
   }
 
   const CadFile& file_;

@@ -78,7 +78,7 @@ Result<CadFile> load_step(const std::string& path) {
     if (!copy) return copy.status();
     recoded = *std::move(copy);
   }
-  *text = {};
+  std::string().swap(*text);  // OpenCASCADE needs the memory
   std::string failure;
   take_messages(failure);
   STEPControl_Reader reader;
