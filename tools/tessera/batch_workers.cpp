@@ -249,7 +249,7 @@ class Pool {
   void end_all() {
     for (Process& process : processes_)
       if (process.id != 0) ::close(process.jobs);  // an idle worker ends
-    for (const int until_next : {200, 100}) {  // milliseconds
+    for (const int until_next : {200, 100}) {      // milliseconds
       for (Process& process : processes_)
         if (process.id != 0 && process.job) ::kill(-process.id, SIGTERM);
       wait_for_ends(std::chrono::milliseconds(until_next));

@@ -113,12 +113,6 @@ struct TessellationOptions {
   bool smallest = false;
   /// Looks for fewer triangles that keep a distance, and takes more time. It never adds triangles and saves a twentieth
   /// to a third of them, most on rational patches and on those that bend along u in one place and along v in another.
-  /// The means are:
-  ///
-  /// - rates proven by bounds of many small pieces of each patch, where bounds of its halves ask for more;
-  /// - where a patch bends unevenly, separate segments in the halves of its parameters and of the borders that it has
-  ///   with its neighbours (with an angle or pixels this is done in any case);
-  /// - among rates that suffice, those that suit the neighbours (not with an angle or pixels).
   ///
   /// Time: about a hundred times that of a plan without it, of the order of 100 us per bicubic patch; many seconds with
   /// `smallest`, which tries many plans. Meant for meshes that are drawn, stored or updated often.
@@ -222,7 +216,6 @@ struct MeshChange {
 /// Trimming loops: of a patch that they cut, the mesh shows what an odd number of them encloses.
 ///
 /// - All bounds hold between the mesh and the kept part, in both directions; those of pixels and angles too.
-/// - A cut patch whose loops are too rough for the tolerances keeps larger bounds; see patches_beyond_tolerance().
 /// - With an angle, the edges along loops also turn by about that angle from one to the next; this is not proven.
 /// - Patches of one face share the vertices of their common sides; whole patches are as without loops.
 /// - Cut patches take positions from the set's double control points. They are not for uniform rates.
@@ -279,8 +272,8 @@ class Tessellation {
   ~Tessellation();
 
   /// Returns the distance that the mesh is proven to keep: the largest of bounds() that is finite; infinite with rates.
-  /// It is at most the tolerance, unless there are patches_beyond_tolerance(). Like all bounds of a plan it holds for the
-  /// set and the revision that the plan was made or updated for.
+  /// It is at most the tolerance, unless there are patches_beyond_tolerance(). Like all bounds of a plan it holds for
+  /// the set and the revision that the plan was made or updated for.
   double bound() const;
   /// Whether the bounds are proven; false with rates, and where the set's fit error is only sampled.
   bool certified() const;
@@ -305,8 +298,7 @@ class Tessellation {
   /// Model::instances. About 0 where faces meet; of edges that max_gap leaves open, half of their faces' distance.
   /// Empty if no loop of the set names edges.
   std::span<const float> edge_gaps() const;
-  /// Returns how many borders were joined by welding and not by their bits: those with the vertices of another border,
-  /// and those made points.
+  /// Returns how many borders were joined by welding and not by their bits, those that became points among them.
   std::size_t welded_borders() const;
   /// Returns how many edges of triangles lie on borders that are joined to no other. check() counts fewer where such
   /// borders have vertices at the same positions by chance. Edges along loops count before they are divided where loops
@@ -315,8 +307,7 @@ class Tessellation {
   /// Returns the patches that have no triangles, because their trimming loops could not be made a polygon.
   std::span<const std::uint32_t> crossed_patches() const;
   /// Returns the cut patches whose bounds exceed the tolerances, by growing patch: their loops are too rough, for
-  /// example because the curves of a loop leave gaps. They are meshed as finely as helps. bounds(), angles() and
-  /// pixel_bounds() state what they keep, and so does bound().
+  /// example because curves leave gaps. They are meshed as finely as helps, and all bounds state what they keep.
   std::span<const std::uint32_t> patches_beyond_tolerance() const;
   MeshCapacity capacity() const;  ///< the exact sizes of the mesh
   /// Returns where a patch's vertices, triangles and quads begin, or all end. Requires share_vertices to be false.

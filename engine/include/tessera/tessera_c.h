@@ -21,8 +21,7 @@
  *
  * Structs: `struct_size` is sizeof the struct as the caller was compiled with, so that later versions can append
  * members. tsr_*_defaults() fills a struct of options; a null pointer stands for the defaults. In structs that are
- * filled, the caller sets struct_size alone. Members named is_... are 0 or 1, and `reserved` is 0; other values are
- * TSR_INVALID_ARGUMENT.
+ * filled, the caller sets struct_size alone. Members named is_... must be 0 or 1, and `reserved` must be 0.
  *
  * Memory: the library keeps no pointer of the caller's beyond a call, and returns nothing to free but handles.
  *
@@ -63,16 +62,15 @@ enum {
 
 /* Returns the library's version, 10000 * major + 100 * minor + patch. */
 uint32_t tsr_version(void);
-/* Returns the sentence of this thread's last error, "" if there was none; and in `index`, unless it is NULL, the
- * element that it names, or -1. Valid until the thread's next call. */
+/* Returns the sentence of this thread's last error, or "", valid until its next call. *index, unless `index` is NULL:
+ * the element that it names, or -1. */
 const char* tsr_last_message(int64_t* index);
 /* Returns a code's name, "invalid_argument"; "unknown" for other numbers. */
 const char* tsr_status_name(tsr_status code);
 
 /* Adds a reference to a handle of any kind. Errors: TSR_INVALID_HANDLE. */
 tsr_status tsr_retain(void* handle);
-/* Gives up a reference; the last one frees the object, after the calls that use it. NULL does nothing. Errors:
- * TSR_INVALID_HANDLE. */
+/* Gives up a reference; the last one frees the object, after the calls that use it. NULL does nothing. Errors: same. */
 tsr_status tsr_release(void* handle);
 
 /* --- How calls run ----------------------------------------------------------------------------------------------- */
@@ -146,8 +144,7 @@ enum {
   TSR_TEXT_SHAPE,        /* a shape's name */
   TSR_TEXT_INSTANCE      /* an instance's name */
 };
-/* Returns a text of a model, in UTF-8 as the file has it; NULL if the index or the handle is none. Valid as long as the
- * model. */
+/* Returns a text of a model in UTF-8, as long as the model lives; NULL if the index or the handle is none. */
 const char* tsr_model_text(const tsr_model* model, int32_t kind, size_t index);
 
 typedef struct tsr_surface_info {
@@ -305,11 +302,9 @@ typedef struct tsr_mesh_report {
 } tsr_mesh_report;
 /* Counts the faults of a mesh. */
 tsr_status tsr_mesh_check(const tsr_mesh* mesh, tsr_mesh_report* report);
-/* Writes a mesh: .obj, .ply, .stl, .glb, .gltf. `set`: that of its plan, for the origin and, with patches, for names and
- * colours of surfaces; NULL: the origin is 0. */
+/* Writes .obj, .ply, .stl, .glb or .gltf. `set`: of the plan, for origin, names and colours; NULL: the origin is 0. */
 tsr_status tsr_mesh_save(const tsr_mesh* mesh, const tsr_set* set, const char* path);
-/* *rounding: how far the file that tsr_mesh_save() writes may move vertices, because it holds floats in the model's
- * coordinates. The mesh of the file keeps tsr_plan_info.bound plus this. */
+/* *rounding: how far that file may move vertices, which adds to tsr_plan_info.bound. */
 tsr_status tsr_mesh_rounding(const tsr_mesh* mesh, const tsr_set* set, const char* path, double* rounding);
 /* Writes one mesh per shape of a model, each at all its places, with names and colours. `sets`: those of the meshes. */
 tsr_status tsr_model_save_meshes(const tsr_model* model, const tsr_mesh* const* meshes, const tsr_set* const* sets,

@@ -206,9 +206,7 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   choice.segments = proven.segments;
   choice.anywhere = proven.anywhere;
   choice.bound = given + proven.distance;
-  if (turning)
-    choice.angle =
-        bounded && turning->is_proven ? turning->bound.angle(proven.segments) : std::numeric_limits<double>::infinity();
+  if (turning) choice.angle = bounded && turning->is_proven ? turning->bound.angle(proven.segments) : no_angle;
   if (picture) choice.pixels = picture->pixels(proven.segments, choice.bound);
   return choice;
 }

@@ -210,19 +210,21 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
                       std::uint32_t s) { put(p, q, r), put(p, r, s); });
   band_ = out.triangles.size();
   for (const CutPatch::Triangle& triangle : cells.band()) put(triangle[0], triangle[1], triangle[2]);
-  if (!names_edges) return;
-  out.open_edges -= chords_;
+  if (names_edges) list_loop_segments(out);
+}
+
+void CutPatchMaker::list_loop_segments(CutPatch& out) {
   if (cutter_.has_divided_chords()) {
     out.loop_segments = divided_chords(cutter_, numbers_, out.triangles);
-    out.open_edges += static_cast<std::uint32_t>(out.loop_segments.size());
-    return;
+  } else {
+    cutter_.for_loop_chords([&](const LoopChord& chord) {
+      const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
+      if (start != CutPatch::none && end != CutPatch::none)
+        out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});
+    });
   }
-  cutter_.for_loop_chords([&](const LoopChord& chord) {
-    const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
-    if (start != CutPatch::none && end != CutPatch::none)
-      out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});
-  });
-  out.open_edges += static_cast<std::uint32_t>(out.loop_segments.size());
+  out.open_edges -= chords_;
+  for (const CutPatch::LoopSegment& segment : out.loop_segments) out.open_edges += segment.start != segment.end;
 }
 
 CutPatch::Box CutPatch::box_of(const Triangle& triangle) const {

@@ -125,6 +125,8 @@ class CutPatchMaker {
   bool run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
            const std::array<Segments, 4>& borders, CutPatch& out);
   void number(EdgeMask collapsed, bool names_edges, CutPatch& out);
+  /// Lists the edges of triangles along loops, and counts them instead of the chords as they were laid.
+  void list_loop_segments(CutPatch& out);
   /// Halves the triangles of the band that are too large. Returns false if there would be too many.
   bool refine(const TrimmedPatch& limits, const ChordBound& chord, CutPatch& out);
   /// Merges vertices that rounding puts in one place, and leaves out the triangles between them.
