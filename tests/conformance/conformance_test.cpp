@@ -10,6 +10,7 @@
 
 #include "conformance/census.h"
 #include "conformance/patches.h"
+#include "support/real_files.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
@@ -87,8 +88,7 @@ class Conformance : public testing::Test {
     const char* const data = std::getenv("TESSERA_TEST_DATA");
     if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
     data_ = data;
-    for (const auto& entry : fs::recursive_directory_iterator(data_))
-      if (entry.is_regular_file()) files_.insert(fs::relative(entry.path(), data_));
+    for (const fs::path& file : files_below(data_)) files_.insert(fs::relative(file, data_));
     ASSERT_FALSE(files_.empty()) << data_;
   }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "support/crack_survey.h"
+#include "support/real_files.h"
 #include "tessera/io.h"
 
 namespace tessera::test {
@@ -18,8 +19,8 @@ namespace {
 std::set<std::filesystem::path> models_below(const std::filesystem::path& folder) {
   const std::set<std::string> known{".bpt", ".bv", ".g2", ".json", ".obj", ".rib"};
   std::set<std::filesystem::path> models;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (known.contains(entry.path().extension().string())) models.insert(entry.path());
+  for (const std::filesystem::path& file : files_below(folder))
+    if (known.contains(file.extension().string())) models.insert(file);
   return models;
 }
 

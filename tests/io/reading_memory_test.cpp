@@ -11,6 +11,7 @@
 
 #include "io/obj_samples.h"
 #include "support/allocations.h"
+#include "support/real_files.h"
 #include "support/scratch_folder.h"
 
 namespace tessera::test {
@@ -41,17 +42,16 @@ TEST(ReadingMemory, RealFilesTakeAtMostEightTimesTheirSize) {
     std::string name;
   };
   std::map<std::string, Worst> worst;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data)) {
-    const fs::path& path = entry.path();
+  for (const fs::path& path : files_below(data)) {
     if (!ours.contains(path.extension())) continue;
     const std::size_t before = restart_peak();
     const Result<Model> model = read_model(path);
     const std::size_t peak = peak_bytes() - before;
-    EXPECT_LE(peak, 8 * entry.file_size() + constant) << path;
+    EXPECT_LE(peak, 8 * fs::file_size(path) + constant) << path;
     Worst& of_kind = worst[path.extension()];
     ++of_kind.files;
-    const double factor = static_cast<double>(peak) / static_cast<double>(entry.file_size());
-    if (entry.file_size() > constant / 8 && factor > of_kind.factor) {
+    const double factor = static_cast<double>(peak) / static_cast<double>(fs::file_size(path));
+    if (fs::file_size(path) > constant / 8 && factor > of_kind.factor) {
       of_kind.factor = factor;
       of_kind.name = path.filename();
     }

@@ -1,6 +1,7 @@
 // Files that are read in runs: every run is that part of the whole, and errors are those of the whole.
 
 #include "tessera/surface_file.h"
+#include "support/real_files.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -13,6 +14,7 @@
 #include "io/reader_checks.h"
 #include "io/spline/surface_index.h"
 #include "support/allocations.h"
+#include "support/real_files.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
@@ -104,9 +106,9 @@ TEST(SurfaceFile, RunsOfStoredFilesAreThoseOfTheWhole) {
   if (const char* const data = std::getenv("TESSERA_TEST_DATA")) folders.emplace_back(data);
   std::size_t files = 0;
   for (const fs::path& folder : folders)
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-      if (entry.path().extension() != ".bpt" && entry.path().extension() != ".g2") continue;
-      expect_runs_of(entry.path());
+    for (const fs::path& file : files_below(folder)) {
+      if (file.extension() != ".bpt" && file.extension() != ".g2") continue;
+      expect_runs_of(file);
       ++files;
     }
   EXPECT_GE(files, 7u);

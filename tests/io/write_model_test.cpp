@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "io/written_models.h"
+#include "support/real_files.h"
 
 namespace tessera::test {
 namespace {

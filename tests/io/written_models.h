@@ -63,13 +63,4 @@ inline void expect_same_patches(const Model& a, const Model& b, const std::strin
     expect_same_patches(a.surfaces[k], b.surfaces[k], where + " surface " + std::to_string(k));
 }
 
-/// The files below a folder, sorted.
-inline std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 }  // namespace tessera::test

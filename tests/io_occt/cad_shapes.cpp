@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "support/real_files.h"
 #include "tessera/cad.h"
 
 namespace tessera::test {
@@ -58,9 +59,8 @@ std::vector<std::filesystem::path> real_cad_files() {
   std::vector<std::filesystem::path> files;
   const char* const data = std::getenv("TESSERA_TEST_DATA");
   if (!data) return files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(data))
-    if (entry.is_regular_file() && is_cad_file(entry.path())) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  for (const std::filesystem::path& file : files_below(data))
+    if (is_cad_file(file)) files.push_back(file);
   return files;
 }
 

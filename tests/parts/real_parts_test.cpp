@@ -7,6 +7,7 @@
 
 #include "parts/joined_parts.h"
 #include "support/random_patches.h"
+#include "support/real_files.h"
 #include "tessera/io.h"
 
 namespace tessera::test {
@@ -16,9 +17,8 @@ std::vector<std::filesystem::path> real_models() {
   std::vector<std::filesystem::path> paths;
   const char* const folder = std::getenv("TESSERA_TEST_DATA");
   if (!folder) return paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && entry.file_size() < 3'000'000) paths.push_back(entry.path());
-  std::ranges::sort(paths);
+  for (const std::filesystem::path& file : files_below(folder))
+    if (std::filesystem::file_size(file) < 3'000'000) paths.push_back(file);
   return paths;
 }
 
