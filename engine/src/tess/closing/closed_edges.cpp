@@ -283,9 +283,10 @@ class Closer {
   std::int64_t count_open() {
     std::int64_t open = 0;
     std::vector<std::array<std::uint32_t, 2>> segments;
-    for (const auto& [low, high, is_joined] : points_.spans) {
-      if (is_open_[points_.points[low].edge]) {
-        open += !is_joined;  // its inserted vertices are left out
+    for (const auto& [low, high, is_alone] : points_.spans) {
+      const std::uint32_t edge = points_.points[low].edge;
+      if (is_open_[edge] || !runs_.meet(edge)) {
+        open += is_alone;  // it gets no vertices
         continue;
       }
       for (std::uint32_t k = low; k < high; ++k) {

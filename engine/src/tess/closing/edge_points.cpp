@@ -90,7 +90,7 @@ class Maker {
     };
     for (const EdgeSegment& segment : segments_)
       if (segment.start != segment.end)
-        out_.spans.push_back({point_of(segment.from), point_of(segment.to), is_joined(segment)});
+        out_.spans.push_back({point_of(segment.from), point_of(segment.to), is_alone(segment)});
   }
 
   /// Inserts vertices at the places that lie strictly inside a segment.

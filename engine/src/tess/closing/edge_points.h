@@ -27,7 +27,7 @@ struct EdgePoints {
   /// The segments of all edges: each from one point to another.
   struct Span {
     std::uint32_t low, high;  ///< into `points`
-    bool is_joined;           ///< whether another patch has triangles on it anyway
+    bool is_alone;            ///< whether a single triangle has it, without this
   };
   std::vector<Span> spans;
   std::vector<EdgeSegment> gaps;  ///< lines that close gaps between curves, if no other patch has triangles on them
