@@ -8,6 +8,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
+constexpr double segment_rounding = 4 * std::numeric_limits<double>::epsilon();  // of an s, by its distance
+
 /// Narrows [near, far] to where origin + s * direction lies in [lower, upper].
 void clip(double origin, double direction, double lower, double upper, double& near, double& far) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -41,6 +43,11 @@ FacetRay RaySegment::facet_ray(float s_near) const {
   return ray;
 }
 
+// The line enters the box at most `reach` behind `offset`.
+double RaySegment::rounding() const {
+  return segment_rounding * (max_abs(start - offset * direction) + std::abs(offset) + reach);
+}
+
 RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margin) {
   RaySegment out;
   // Divides first by the largest component, so that neither tiny nor huge directions overflow or underflow.
@@ -56,8 +63,7 @@ RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margi
   clip(from.y, d.y, box.lower.y, box.upper.y, near, far);
   clip(from.z, d.z, box.lower.z, box.upper.z, near, far);
   // A far origin rounds by its distance; a miss of the box by that much counts as a hit.
-  out.slack = 4 * std::numeric_limits<double>::epsilon() * (max_abs(from) + std::abs(near));
-  const double slack = margin + out.slack;
+  const double slack = margin + segment_rounding * (max_abs(from) + std::abs(near));
   if (!std::isfinite(near) || !(near <= far + slack)) return out;
   out.offset = near - slack;
   out.start = from + out.offset * d;

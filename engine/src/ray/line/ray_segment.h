@@ -18,10 +18,11 @@ struct RaySegment {
   double scale = 0;   ///< the length of the given direction: t = (offset + s) / scale
   double offset = 0;  ///< arc length from the ray's origin to start; may be negative
   double reach = 0;
-  double slack = 0;   ///< bound on the rounding of an s, by where the segment starts
   bool empty = true;  ///< misses the box
 
   double t_at(double s) const { return (offset + s) / scale; }
+  /// Bounds the rounding of an s, by where the ray and the segment start.
+  double rounding() const;
   /// Returns the ray for Embree, from arc length s_near on; rounded outwards at the far end.
   FacetRay facet_ray(float s_near = 0) const;
 };

@@ -218,10 +218,14 @@ bool GridScene::refine(const RaySegment& segment, const FacetHit& facet, Surface
 /// Returns false if t is not between the ray's ends, or if loops cut the point away.
 bool GridScene::accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined,
                        Hit& hit) const {
-  // The segment's start, and with it the rounding of s, depends on tnear.
-  const double t = segment.t_at(root.s), rounding = segment.slack / segment.scale;
-  if (!(t >= ray.tnear - rounding && t <= ray.tfar + rounding) || !std::isfinite(t)) return false;
-  hit.t = std::clamp(t, ray.tnear, ray.tfar);
+  hit.t = segment.t_at(root.s);
+  if (!std::isfinite(hit.t)) return false;
+  if (!(hit.t >= ray.tnear && hit.t <= ray.tfar)) {
+    // The segment's start, and with it the rounding of s, depends on tnear.
+    const double rounding = segment.rounding() / segment.scale;
+    if (!(hit.t >= ray.tnear - rounding && hit.t <= ray.tfar + rounding)) return false;
+    hit.t = std::clamp(hit.t, ray.tnear, ray.tfar);
+  }
   if (is_cut_away(root)) return false;
 
   hit.flags.unrefined = !refined;
