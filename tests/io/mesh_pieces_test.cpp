@@ -25,7 +25,7 @@ struct Kind {
 };
 
 Mesh piece_of(std::size_t k, const Kind& kind) {
-  Mesh mesh = random_mesh(1000 + 37 * k, 1800 + 11 * k, kind.attributes, {10, 20, 3e4});
+  Mesh mesh = random_mesh(1000 + 37 * k, 1800 + 11 * k, kind.attributes, {10, 20, 30});
   if (kind.doubles)
     for (const float x : mesh.positions) mesh.positions_f64.push_back(double(x) + 1e-9);
   for (std::size_t n = 0; kind.quads && n < 50 + k; ++n) {
