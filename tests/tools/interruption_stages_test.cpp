@@ -71,7 +71,8 @@ class InterruptedStages : public ToolTest {
   void expect_end(const Words& command, std::chrono::milliseconds after = 700ms, const Words& variables = {}) const {
     for (const int signal : {SIGTERM, SIGINT}) {
       double taken = seconds_to_end(command, signal, after, variables);
-      if (taken >= 1) taken = seconds_to_end(command, signal, after, variables);  // a busy machine
+      for (int more = 0; more < 4 && taken >= 1; ++more)  // a busy machine
+        taken = seconds_to_end(command, signal, after, variables);
       EXPECT_LT(taken, 1) << command[0];
     }
   }
