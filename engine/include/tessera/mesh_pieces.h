@@ -25,7 +25,7 @@ struct MeshTotals {
   bool normals = false;           ///< Mesh::normals
   bool parameters = false;        ///< Mesh::parameters
   bool patches = false;           ///< a patch for each face
-  bool double_positions = false;  ///< positions in double: Mesh::positions_f64
+  bool double_positions = false;  ///< Mesh::positions_f64; of its own accord only write_mesh() writes doubles
 
   /// Returns the totals of a mesh that is one piece.
   static MeshTotals of(const Mesh& mesh);

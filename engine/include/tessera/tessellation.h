@@ -301,8 +301,8 @@ class Tessellation {
   /// Returns how many borders were joined by welding and not by their bits, those that became points among them.
   std::size_t welded_borders() const;
   /// Returns how many edges of triangles lie on borders that are joined to no other. check() counts fewer where such
-  /// borders have vertices at the same positions by chance. Edges along loops count before they are divided where loops
-  /// cross. 0 with rates, where it is not known.
+  /// borders have vertices at the same positions by chance, and may count others where loops of a face run over each
+  /// other within the rounding of positions. 0 with rates, where it is not known.
   std::size_t open_edges() const;
   /// Returns the patches that have no triangles, because their trimming loops could not be made a polygon.
   std::span<const std::uint32_t> crossed_patches() const;
