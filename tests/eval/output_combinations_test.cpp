@@ -1,7 +1,7 @@
 // Every call that evaluates writes all outputs that it is asked for, whatever the others are, and nothing else: each
 // output alone is compared with the reference, and combinations are compared with the outputs alone, bit by bit.
 //
-// Which code runs depends on the outputs, degrees, layouts and stores, so fast paths are tested here without being named.
+// The code that runs depends on outputs, degrees, layouts and stores, so fast paths are tested here without being named.
 
 #include <cmath>
 #include <functional>

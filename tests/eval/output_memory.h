@@ -191,7 +191,7 @@ class BlockMemory {
   std::vector<std::byte> bytes(std::size_t output) const {
     return {outputs_[output].begin() + cache_line, outputs_[output].end() - cache_line};
   }
-  /// As ViewMemory::holds(). `written`: by record, each a sample of a block.
+  /// Works like ViewMemory::holds(). `written`: by record, each a sample of a block.
   bool holds(const OutputBytes& all, std::span<const std::uint8_t> written) const {
     for (std::size_t output = 0; output < output_count; ++output) {
       if (!has(mask_, output)) continue;

@@ -1,4 +1,4 @@
-// What files state of single instances: colours, names, scales and mirrors.
+// Facts that files state of single instances: colours, names, scales and mirrors.
 
 #include <gtest/gtest.h>
 #include <opencascade/BRepPrimAPI_MakeBox.hxx>

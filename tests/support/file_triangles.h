@@ -95,7 +95,7 @@ inline std::vector<FileTriangle> of_ply(const std::string& bytes) {
   return triangles;
 }
 
-/// Of one mesh below a node that has a translation and no scale.
+/// Reads one mesh below a node that has a translation and no scale.
 inline std::vector<FileTriangle> of_glb(const std::string& bytes) {
   const char* at = bytes.data() + 12;
   const auto text_bytes = take<std::uint32_t>(at);

@@ -93,7 +93,7 @@ class Followed {
   }
 
  private:
-  /// What must hold for any plan and its mesh.
+  /// Checks that hold for any plan and its mesh.
   void compare() {
     EXPECT_LE(plan_->bound(), *options_.tolerance * (1 + 1e-6));
     expect_bounds();

@@ -47,7 +47,7 @@ const std::vector<std::pair<const char*, std::function<BSplineSurface()>>> surfa
     {"cylinder", [] { return cylinder(); }},
 };
 
-/// What is known of a mesh: its triangles, the parts of its area that are turned by more than 60 degrees from the mean
+/// Facts of a mesh: its triangles, the parts of its area that are turned by more than 60 degrees from the mean
 /// of their corners' normals, and all of it.
 struct Made {
   bool ok = false;

@@ -28,7 +28,7 @@ struct CadFile {
   Colours colours;                                      ///< of entities
   std::unordered_map<const void*, Domain> ranges;       ///< of faces without loops, which may be parts of their surface
   std::unordered_set<const void*> products;             ///< parts and assemblies of parts
-  // Of parts in an assembly; the key is the part at its place in the assembly that holds it.
+  // For parts in an assembly; the key is the part at its place in the assembly that holds it.
   template <class T>
   using OfInstances = NCollection_DataMap<TopoDS_Shape, T, TopTools_ShapeMapHasher>;
   OfInstances<std::string> instance_names;

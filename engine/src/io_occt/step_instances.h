@@ -1,5 +1,5 @@
 #pragma once
-// What a STEP file states of single instances of parts, beyond their names and rigid places.
+// Reads what a STEP file states of single instances of parts, beyond their names and rigid places.
 
 #include <opencascade/XSControl_Reader.hxx>
 

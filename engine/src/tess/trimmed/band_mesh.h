@@ -28,7 +28,7 @@ class BandMesh {
   std::uint32_t start(Edge edge) const { return triangle(edge.triangle)[edge.corner]; }
   std::uint32_t finish(Edge edge) const { return triangle(edge.triangle)[next(edge.corner)]; }
   std::uint32_t apex(Edge edge) const { return triangle(edge.triangle)[before(edge.corner)]; }
-  /// The same edge, as the neighbour has it.
+  /// Returns the edge as the neighbour has it.
   Edge across(Edge edge) const { return links_[edge.triangle - first_][edge.corner]; }
 
   /// Divides both triangles of an edge that has a neighbour, at the vertex `middle` on it. The two new triangles are

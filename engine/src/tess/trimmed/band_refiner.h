@@ -18,7 +18,7 @@ class BandRefiner {
  public:
   using Triangle = BandMesh::Triangle;
 
-  /// What triangles must be like. Vertices are named by their numbers.
+  /// The demands on triangles. Vertices are named by their numbers.
   struct Demands {
     FunctionRef<bool(const Triangle&)> is_large;
     /// The measure of an edge, 0 if it must not be halved. See run() for what makes halving end.
