@@ -102,11 +102,14 @@ if ((EUID != 0)); then
     fail "missing: ${missing[*]}. Installing them needs root, and there is no sudo: run '${BASH_SOURCE[0]} --for $purpose' as root"
   as_root=(sudo)
 fi
+as_root+=(env DEBIAN_FRONTEND=noninteractive)
 apt() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 "$@"
+  "${as_root[@]}" apt-get -q -y -o DPkg::Lock::Timeout=300 "$@"
 }
 
 echo "setup: installs ${missing[*]}"
+# apt-get installs nothing while an earlier installation is half done.
+"${as_root[@]}" dpkg --configure -a || echo "setup: dpkg --configure -a failed; trying all the same" >&2
 apt update || echo "setup: apt-get update failed; going on with the package lists that are here" >&2
 if ! apt install --no-install-recommends "${missing[@]}"; then
   if [[ $purpose == peers ]]; then  # one by one: a missing peer must not prevent the others

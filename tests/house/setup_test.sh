@@ -8,7 +8,7 @@ bash=$(command -v bash)
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 mkdir "$place/bin" "$place/elsewhere"
-for program in env cat grep sed; do
+for program in env cat grep rm sed; do
   ln -s "$(command -v "$program")" "$place/bin/$program"
   ln -s "$(command -v "$program")" "$place/elsewhere/$program"
 done
@@ -19,10 +19,14 @@ cat >"$place/bin/dpkg-query" <<TEXT
 grep -qx -- "\${*: -1}" "$place/missing" && exit 1
 printf 'ii '
 TEXT
+cat >"$place/bin/dpkg" <<TEXT
+#!$bash
+[[ \$* == "--configure -a" && \$DEBIAN_FRONTEND == noninteractive ]] && rm -f "$place/interrupted"
+TEXT
 cat >"$place/bin/apt-get" <<TEXT
 #!$bash
 echo "\$*" >>"$place/calls"
-[[ \$DEBIAN_FRONTEND == noninteractive ]] || exit 1
+[[ \$DEBIAN_FRONTEND == noninteractive && ! -e "$place/interrupted" ]] || exit 1
 [[ -e "$place/no_network" ]] && exit 100
 [[ -e "$place/unknown" && " \$* " == *" \$(cat "$place/unknown") "* ]] && exit 100
 for word; do sed -i "/^\$word\$/d" "$place/missing"; done
@@ -82,6 +86,7 @@ grep -qx libsisl-dev "$place/missing" && { echo "libsisl-dev was not installed" 
 rm "$place/unknown"
 
 printf 'qemu-user\nlibosd-dev\n' >"$place/missing"
+touch "$place/interrupted"  # an earlier installation was cut off
 attempt "$place/bin" --for neon
 expect 0 "installed qemu-user"
 
