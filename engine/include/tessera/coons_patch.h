@@ -47,7 +47,7 @@ class RuledSurface {
     Interval across;
     Direction straight;
   };
-  explicit RuledSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit RuledSurface(Data data);
   std::shared_ptr<const Data> data_;
 };
 
@@ -130,7 +130,7 @@ class CoonsPatch {
     Blend f, g;
     std::array<Vec3, 4> corners;
   };
-  explicit CoonsPatch(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit CoonsPatch(Data data);
   std::shared_ptr<const Data> data_;
 };
 

@@ -61,7 +61,7 @@ class Curve {
   std::span<const double> knots() const { return data_->knots; }  ///< points().size() + degree() + 1
   const Interval& domain() const { return data_->domain; }        ///< interval on which it is evaluated
   /// Compares degree, points, weights, knots and domain, by the == of numbers.
-  friend bool operator==(const Curve& a, const Curve& b) { return a.data_ == b.data_ || *a.data_ == *b.data_; }
+  friend bool operator==(const Curve& a, const Curve& b);
 
  private:
   struct Data {
@@ -71,7 +71,7 @@ class Curve {
     Interval domain;
     friend bool operator==(const Data&, const Data&) = default;
   };
-  explicit Curve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit Curve(Data data);
   std::shared_ptr<const Data> data_;
 };
 

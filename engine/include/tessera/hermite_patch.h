@@ -96,7 +96,7 @@ class HermitePatch {
     Grid geometry;  // by_end
     Domain domain;
   };
-  explicit HermitePatch(const Data& data) : data_(std::make_shared<const Data>(data)) {}
+  explicit HermitePatch(const Data& data);
   /// Makes a patch from the geometry by local parameters, which run over [0,1].
   static Result<HermitePatch> from_local(const Grid& local, const Domain& domain);
   /// Returns the geometry by local parameters.
@@ -179,7 +179,7 @@ class HermiteNetwork {
     std::vector<HermiteNode> nodes;
     std::vector<double> k, l, knots_u, knots_v;
   };
-  explicit HermiteNetwork(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit HermiteNetwork(Data data);
   HermitePatch::Corners patch_corners(std::size_t i, std::size_t j) const;
   friend SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v);
   static Result<HermiteNetwork> checked(HermiteNetwork network);

@@ -81,7 +81,7 @@ class BSplineSurface {
     std::vector<Vec3> points;
     Domain domain;
   };
-  explicit BSplineSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit BSplineSurface(Data data);
   std::shared_ptr<const Data> data_;
 };
 

@@ -91,7 +91,7 @@ class ParametricSurface {
     SurfaceFunctions functions;
     Domain domain;
   };
-  explicit ParametricSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit ParametricSurface(Data data);
   std::shared_ptr<const Data> data_;
   friend Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, double v);
 };
@@ -150,7 +150,7 @@ class ParametricCurve {
     CurveFunctions functions;
     Interval domain;
   };
-  explicit ParametricCurve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit ParametricCurve(Data data);
   std::shared_ptr<const Data> data_;
   friend Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t);
 };

@@ -162,7 +162,7 @@ class QuadricPiece {
     Domain range;
     int sheet;
   };
-  explicit QuadricPiece(const Data& data) : data_(std::make_shared<const Data>(data)) {}
+  explicit QuadricPiece(const Data& data);
   std::shared_ptr<const Data> data_;
 };
 

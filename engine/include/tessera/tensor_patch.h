@@ -52,9 +52,7 @@ class BasisMatrix {
   double inverse_coefficient(int i, int k) const { return data_->from_bernstein[index(i, k)]; }
 
   /// Compares the matrices.
-  friend bool operator==(const BasisMatrix& a, const BasisMatrix& b) {
-    return a.data_ == b.data_ || *a.data_ == *b.data_;
-  }
+  friend bool operator==(const BasisMatrix& a, const BasisMatrix& b);
 
  private:
   struct Data {
@@ -62,7 +60,7 @@ class BasisMatrix {
     std::vector<double> power, bernstein, from_bernstein;
     friend bool operator==(const Data&, const Data&) = default;
   };
-  explicit BasisMatrix(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit BasisMatrix(Data data);
   std::size_t index(int k, int i) const { return static_cast<std::size_t>(k * (degree() + 1) + i); }
 
   std::shared_ptr<const Data> data_;
@@ -96,7 +94,7 @@ class TensorPatch {
     std::vector<Vec3> geometry;
     Domain domain;
   };
-  explicit TensorPatch(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit TensorPatch(Data data);
   std::shared_ptr<const Data> data_;
 };
 
@@ -138,7 +136,7 @@ class ExplicitPolynomial {
     std::vector<double> coefficients;
     Domain rectangle;
   };
-  explicit ExplicitPolynomial(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+  explicit ExplicitPolynomial(Data data);
   std::shared_ptr<const Data> data_;
 };
 

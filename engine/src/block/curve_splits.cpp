@@ -12,7 +12,6 @@ namespace {
 constexpr int max_rounds = 8;
 /// Points within a cell of this share of the distance stand for one another.
 constexpr double cell_share = 1.0 / 16;
-constexpr double max_sagitta = 1.0 / 16;  // of a chord, of SpaceCurve's samples
 
 /// Leaves one point of each cell, the least by its coordinates.
 std::vector<Vec3> one_per_cell(std::vector<Vec3> points, double cell) {
@@ -58,7 +57,7 @@ class Divider {
     const std::span<const SpaceCurve::Sample> samples = curve_.curve.samples();
     for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
       const Vec3 &a = samples[k].point, &b = samples[k + 1].point;
-      const double wide = reach + max_sagitta * length(b - a);
+      const double wide = reach + SpaceCurve::max_sagitta * length(b - a);
       Box3 box;
       box.extend(a);
       box.extend(b);

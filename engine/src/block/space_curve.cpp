@@ -10,8 +10,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int max_depth = 8;
-constexpr double max_sagitta = 1.0 / 16;  // of a chord
+constexpr int max_sample_depth = 8;
 
 std::size_t spans_of(const Curve& curve) { return curve.points().size() - static_cast<std::size_t>(curve.degree()); }
 
@@ -108,7 +107,7 @@ void SpaceCurve::append(const Sample& from, const Sample& to, int depth) {
   const Sample middle{middle_t, at(middle_t)};
   const double chord = length(to.point - from.point);
   const double sagitta = length(middle.point - (0.5 * from.point + 0.5 * to.point));
-  if (depth < max_depth && sagitta > max_sagitta * chord) {
+  if (depth < max_sample_depth && sagitta > max_sagitta * chord) {
     append(from, middle, depth + 1);
     return append(middle, to, depth + 1);
   }

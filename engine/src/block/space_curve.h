@@ -27,8 +27,9 @@ class SpaceCurve {
     double t;
     Vec3 point;
   };
+  static constexpr double max_sagitta = 1.0 / 16;
 
-  /// Samples the curve so densely that it stays near its chords: within a sixteenth of their length, as sampled.
+  /// Samples the curve so densely that it stays near its chords: within max_sagitta of their length, as sampled.
   /// Failures of evaluations go to `failure`, the first of all; points are zero from then on.
   SpaceCurve(const Shape& shape, const EdgeUse& use, Line line, Status& failure);
 

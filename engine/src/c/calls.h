@@ -81,7 +81,9 @@ class Usage {
 };
 class Reading {
  public:
-  explicit Reading(Usage& usage) : usage_(usage.begin_reading() ? &usage : nullptr) {}
+  explicit Reading(Usage& usage) : Reading(&usage) {}
+  /// Of nothing, if there is no usage.
+  explicit Reading(Usage* usage) : usage_(usage && usage->begin_reading() ? usage : nullptr) {}
   Reading(const Reading&) = delete;
   Reading& operator=(const Reading&) = delete;
   ~Reading() {

@@ -18,7 +18,7 @@ struct State {
   std::uint32_t calls : 16;
 };
 static_assert(sizeof(State) == 8);
-constexpr std::uint32_t most = 0xffff;
+constexpr std::uint32_t max_count = 0xffff;
 
 struct Slot {
   std::atomic<std::uint64_t> state = 0;
@@ -115,7 +115,7 @@ void* add_handle(std::shared_ptr<Object> object) { return std::bit_cast<void*>(t
 bool retain_handle(const void* handle) {
   State state;
   return update(
-             handle, [](State& of) { return of.owners < most && (++of.owners, true); }, state) != nullptr;
+             handle, [](State& of) { return of.owners < max_count && (++of.owners, true); }, state) != nullptr;
 }
 
 bool release_handle(const void* handle) {
@@ -130,7 +130,7 @@ bool release_handle(const void* handle) {
 Pin::Pin(const void* handle) {
   State state;
   Slot* const slot = update(
-      handle, [](State& of) { return of.calls < most && (++of.calls, true); }, state);
+      handle, [](State& of) { return of.calls < max_count && (++of.calls, true); }, state);
   if (!slot) return;
   place_ = static_cast<std::uint32_t>(number_of(handle));
   object_ = &slot->object;

@@ -143,19 +143,17 @@ CStatus write_hits(const std::vector<Hit>& hits, const tsr_hits_out& out) {
 /// A scene and its set, which the call reads.
 class SceneInUse {
  public:
-  explicit SceneInUse(const tsr_scene* scene) : scene_(scene) {
-    if (!scene_) return;
-    own_.emplace(scene_->usage), of_set_.emplace(scene_->set->usage);
-  }
+  explicit SceneInUse(const tsr_scene* scene)
+      : scene_(scene), own_(scene_ ? &scene_->usage : nullptr), of_set_(scene_ ? &scene_->set->usage : nullptr) {}
   CStatus check() const {
     if (!scene_) return scene_.error();
-    return *own_ ? (*of_set_ ? CStatus() : in_use(Object::Kind::set)) : in_use(Object::Kind::scene);
+    return own_ ? (of_set_ ? CStatus() : in_use(Object::Kind::set)) : in_use(Object::Kind::scene);
   }
   const RayScene& scene() const { return scene_->scene; }
 
  private:
   Held<CScene> scene_;
-  std::optional<Reading> own_, of_set_;
+  Reading own_, of_set_;
 };
 
 }  // namespace

@@ -31,9 +31,9 @@ template <class T>
 double operations_per_second(int (*probe)(std::size_t, T*)) {
   constexpr std::size_t rounds = 100'000, chains = 16;
   T sink = 0;
-  int lanes = 0;
-  const double seconds = best_seconds(12, [&] { lanes = probe(rounds, &sink); });
-  return static_cast<double>(rounds * chains) * lanes / seconds;
+  int width = 0;
+  const double seconds = best_seconds(12, [&] { width = probe(rounds, &sink); });
+  return static_cast<double>(rounds * chains) * width / seconds;
 }
 
 }  // namespace

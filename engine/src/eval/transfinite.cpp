@@ -9,6 +9,7 @@
 #include "base/aligned.h"
 #include "base/internal_export.h"
 #include "eval/parameter_grid.h"
+#include "eval/task_size.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 #include "surface/callable/border_curve.h"
@@ -19,8 +20,8 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-/// Points a task, and below how many one thread is faster than waking another.
-constexpr std::size_t points_per_task = 16384, serial_points = 32768;
+/// Below so many points one thread is faster than waking another.
+constexpr std::size_t serial_points = 32768;
 
 /// Samples of the borders for each u and for each v, in the layout of kernel::BlendJob.
 template <class T>

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "parts/packed_message.h"
 #include "tessera/guard.h"
 
 namespace tessera::inline abi_0_1 {
@@ -26,25 +27,6 @@ struct HitCandidate {
 static_assert(sizeof(HitCandidate) == 16);
 // Without gaps, so that a hit's bytes depend on its numbers alone.
 static_assert(std::is_trivially_copyable_v<Hit> && sizeof(Hit) == 16 + 18 * sizeof(double));
-
-template <class T>
-void append(Message& message, const T& value) {
-  const std::size_t at = message.size();
-  message.resize(at + sizeof(T));
-  std::memcpy(message.data() + at, &value, sizeof(T));
-}
-
-template <class T>
-std::size_t count_in(const Message& message) {
-  return message.size() / sizeof(T);
-}
-
-template <class T>
-T element(const Message& message, std::size_t k) {
-  T value;
-  std::memcpy(&value, message.data() + k * sizeof(T), sizeof(T));
-  return value;
-}
 
 /// The merging of one list of hits.
 class HitMerger {

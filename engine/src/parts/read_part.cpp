@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "block/box_tree.h"
+#include "parts/packed_message.h"
 #include "tessera/guard.h"
 #include "tessera/part_mesh.h"
 
@@ -33,19 +34,6 @@ SentBox sent(std::uint64_t surface, const Box3& box) {
 
 Box3 box_of(const SentBox& sent) {
   return {{sent.lower[0], sent.lower[1], sent.lower[2]}, {sent.upper[0], sent.upper[1], sent.upper[2]}};
-}
-
-template <class T>
-void append(Message& message, const T& value) {
-  const auto bytes = std::as_bytes(std::span(&value, 1));
-  message.insert(message.end(), bytes.begin(), bytes.end());
-}
-
-template <class T>
-std::vector<T> read_all(const Message& message) {
-  std::vector<T> values(message.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), message.data(), values.size() * sizeof(T));
-  return values;
 }
 
 /// The run of a part, its box and its fit error.

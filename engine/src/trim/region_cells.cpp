@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <queue>
 #include <span>
 #include <utility>
 
+#include "base/infinity.h"
 #include "trim/piece_samples.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t crowded = 8;  ///< a cell with more entries gets a finer grid
 
 /// A piece in a rectangle, and the heights at which it counts there.

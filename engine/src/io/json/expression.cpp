@@ -48,7 +48,7 @@ constexpr auto functions2 = std::to_array<NamedFunction2>({
 
 /// Reads a number at the begin of a text. Replaces muParser's own reader, which uses a stream: for a stream, running
 /// out of memory looks like the end of the number.
-int read_number(const char* text, int* at, double* value) {
+int read_literal(const char* text, int* at, double* value) {
   if (!std::isdigit(static_cast<unsigned char>(text[0])) && text[0] != '.') return 0;
   const auto [end, error] = std::from_chars(text, text + std::strlen(text), *value);
   if (error != std::errc{} || std::isalpha(static_cast<unsigned char>(*end))) return 0;  // as muParser's stream does
@@ -62,7 +62,7 @@ class Evaluator {
   Evaluator(const std::string& text, std::span<const std::string> variables) {
     parser_.ClearConst();
     parser_.ClearFun();
-    parser_.AddValIdent(read_number);
+    parser_.AddValIdent(read_literal);
     parser_.EnableOptimizer(false);  // the optimizer reorders sums
     parser_.DefineConst("pi", std::numbers::pi);
     parser_.DefineConst("e", std::numbers::e);

@@ -96,8 +96,8 @@ JsonValue kind_of(const JsonValue& value) {
 
 /// Reads an exact curve; `kind` is the index of its word in bezier, b_spline, nurbs, circle.
 Curve read_exact_curve(const JsonValue& value, std::size_t kind) {
-  constexpr std::array readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve};
-  return kind < readers.size() ? readers[kind](value, read_vector) : read_circle(value);
+  constexpr std::array curve_readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve};
+  return kind < curve_readers.size() ? curve_readers[kind](value, read_vector) : read_circle(value);
 }
 
 /// Reads a circle in a surface's parameters.
@@ -121,9 +121,9 @@ BorderCurve read_border(const JsonValue& value) {
 }
 
 Curve read_parameter_curve(const JsonValue& value) {
-  constexpr std::array readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve};
+  constexpr std::array curve_readers{read_bezier_curve, read_b_spline_curve, read_nurbs_curve};
   const std::size_t kind = read_word(kind_of(value), {"bezier", "b_spline", "nurbs", "circle"});
-  return kind < readers.size() ? readers[kind](value, read_parameters) : read_parameter_circle(value);
+  return kind < curve_readers.size() ? curve_readers[kind](value, read_parameters) : read_parameter_circle(value);
 }
 
 Axis read_axis(const JsonValue& value) {

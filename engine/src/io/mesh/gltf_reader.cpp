@@ -30,7 +30,7 @@ struct GltfText {
 constexpr std::string_view glb_magic = "glTF";
 constexpr std::size_t glb_header = 12, chunk_header = 8;
 
-Status error(std::string_view name, const std::string& sentence, StatusCode code = StatusCode::parse_error) {
+Status gltf_error(std::string_view name, const std::string& sentence, StatusCode code = StatusCode::parse_error) {
   return Status(code, std::string(name) + ": " + sentence);
 }
 
@@ -43,13 +43,13 @@ std::uint32_t u32_at(std::string_view bytes, std::size_t at) {
 /// Finds the chunks of a .glb file (section 4.4); unknown chunks are ignored, as it demands.
 Result<GltfText> split_glb(std::string_view bytes, std::string_view name) {
   if (bytes.size() < glb_header + chunk_header)
-    return error(name, "the file ends in its header, after " + counted(bytes.size(), "byte"));
+    return gltf_error(name, "the file ends in its header, after " + counted(bytes.size(), "byte"));
   const std::uint32_t version = u32_at(bytes, 4), length = u32_at(bytes, 8);
   if (version != 2)
-    return error(name, "found version " + std::to_string(version) + " of the container, this reader knows version 2",
+    return gltf_error(name, "found version " + std::to_string(version) + " of the container, this reader knows version 2",
                  StatusCode::unsupported);
   if (length != bytes.size())
-    return error(name,
+    return gltf_error(name,
                  "the header states " + counted(length, "byte") + ", the file has " + std::to_string(bytes.size()));
   GltfText text;
   std::size_t chunk = 0;
@@ -57,11 +57,11 @@ Result<GltfText> split_glb(std::string_view bytes, std::string_view name) {
     const std::size_t left = bytes.size() - at;
     const std::size_t size = left < chunk_header ? left : u32_at(bytes, at);
     if (left < chunk_header || size > left - chunk_header)
-      return error(name, "chunk " + std::to_string(chunk + 1) + " is longer than the file: it needs " +
+      return gltf_error(name, "chunk " + std::to_string(chunk + 1) + " is longer than the file: it needs " +
                              std::to_string(left < chunk_header ? chunk_header : size) + " bytes, there are " +
                              std::to_string(left < chunk_header ? left : left - chunk_header));
     const std::string_view type = bytes.substr(at + 4, 4), content = bytes.substr(at + chunk_header, size);
-    if ((type == "JSON") != (chunk == 0)) return error(name, "expected one chunk of JSON, as the first one");
+    if ((type == "JSON") != (chunk == 0)) return gltf_error(name, "expected one chunk of JSON, as the first one");
     if (chunk == 0) text.json = content;
     if (chunk == 1 && type == std::string_view("BIN\0", 4)) text.binary = content;
     at += chunk_header + size;

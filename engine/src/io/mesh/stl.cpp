@@ -59,7 +59,7 @@ class StlMesh {
   VertexWelder welder_{mesh_.positions};
 };
 
-Status error(std::string_view name, const std::string& sentence) {
+Status stl_error(std::string_view name, const std::string& sentence) {
   return Status(StatusCode::parse_error, std::string(name) + ": " + sentence);
 }
 
@@ -77,7 +77,7 @@ std::size_t stated_triangles(std::string_view bytes) {
 
 Result<Mesh> parse_binary(std::string_view bytes, std::string_view name) {
   const std::size_t triangles = stated_triangles(bytes);
-  if (triangles == 0) return error(name, "there are no triangles");
+  if (triangles == 0) return stl_error(name, "there are no triangles");
   StlMesh mesh(triangles);
   const char* at = bytes.data() + header_bytes;
   for (std::size_t k = 0; k < triangles; ++k, at += triangle_bytes) {
@@ -183,9 +183,9 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
     return parse_binary(bytes, name);
   if (begins_with_solid(bytes, name)) return AsciiReader(bytes, name).read();
   if (!has_header)
-    return error(name, "the file does not begin with solid, and with " + std::to_string(bytes.size()) +
+    return stl_error(name, "the file does not begin with solid, and with " + std::to_string(bytes.size()) +
                            " bytes it is too short for a binary STL file");
-  return error(name, "the header states " + std::to_string(stated_triangles(bytes)) +
+  return stl_error(name, "the header states " + std::to_string(stated_triangles(bytes)) +
                          " triangles; the file has room for " +
                          std::to_string((bytes.size() - header_bytes) / triangle_bytes) + " and " +
                          std::to_string((bytes.size() - header_bytes) % triangle_bytes) + " bytes more");

@@ -26,7 +26,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Requests that draw shapes that are not read. All other requests say how, and from where, the scene is drawn.
-constexpr std::string_view shapes[] = {"Polygon",         "GeneralPolygon",
+constexpr std::string_view unread_requests[] = {"Polygon",         "GeneralPolygon",
                                        "PointsPolygons",  "PointsGeneralPolygons",
                                        "SubdivisionMesh", "HierarchicalSubdivisionMesh",
                                        "Curves",          "Points",
@@ -322,7 +322,7 @@ class RibReader {
   }
 
   Tally& unread() {
-    if (contains(shapes, request_)) return unread_shapes_;
+    if (contains(unread_requests, request_)) return unread_shapes_;
     return contains(other_transforms, request_) ? unread_transforms_ : others_;
   }
 

@@ -20,7 +20,7 @@ constexpr double pi = std::numbers::pi;
 /// Radians; whole turns are exact.
 double radians(double degrees) { return degrees / 360 * (2 * pi); }
 
-struct Shape {
+struct QuadricRequest {
   std::string_view request, numbers;  ///< what its numbers are, for messages
   std::size_t count;
   Result<RibQuadric> (*make)(std::span<const double> n, double turn);  ///< turn: thetamax in radians, above 0
@@ -95,7 +95,7 @@ Result<RibQuadric> torus(std::span<const double> n, double turn) {
   return placed(torus_part(n[0], n[1], {0, turn, up * from, up * to}), Affine::scaled({1, 1, up}));
 }
 
-constexpr Shape shapes[] = {
+constexpr QuadricRequest quadric_requests[] = {
     {"Sphere", "radius, zmin, zmax, thetamax", 4, sphere},
     {"Cylinder", "radius, zmin, zmax, thetamax", 4, cylinder},
     {"Cone", "height, radius, thetamax", 3, cone},
@@ -108,8 +108,8 @@ constexpr Shape shapes[] = {
 }  // namespace
 
 Result<RibQuadric> read_quadric(const RibSurfaceText& text) {
-  const Shape& shape = *std::find_if(std::begin(shapes), std::end(shapes),
-                                     [&](const Shape& known) { return known.request == text.request; });
+  const QuadricRequest& shape = *std::find_if(std::begin(quadric_requests), std::end(quadric_requests),
+ [&](const QuadricRequest& known) { return known.request == text.request; });
   std::array<double, 7> values{};
   const std::span<double> numbers = std::span(values).first(shape.count);
   Status status = text.lexer.take_numbers(

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "tessera/nurbs_surface.h"
@@ -10,10 +9,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-/// Files print angles with 15 digits or fewer: an angle within this of a full turn is taken as one.
-constexpr double printed = 1e-9;
 double snapped(double turn) { return std::abs(turn - 2 * pi) <= printed ? 2 * pi : turn; }
 
 /// The parameter of an angle in [0, 2 pi] on a circle of four rational arcs over [0,1]. On the arc with middle angle m

@@ -1,6 +1,8 @@
 #pragma once
 // Elementary surfaces of files: parts of quadrics, and of surfaces of revolution about the z axis.
 
+#include <numbers>
+
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 #include "tessera/quadric.h"
@@ -8,6 +10,10 @@
 #include "tessera/surface.h"
 
 namespace tessera::inline abi_0_1 {
+
+inline constexpr double pi = std::numbers::pi;
+/// Files print angles with 15 digits or fewer: within this, an angle is taken as a full turn, or as that of a pole.
+inline constexpr double printed = 1e-9;
 
 /// A part of a quadric in the canonical frame, by its canonical parameters. Errors: invalid_argument (another kind than
 /// `kind`, an empty range).

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "io/spline/elementary.h"
 #include "io/spline/g2.h"
@@ -12,8 +11,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// Axes of length 1, x made orthogonal to z. None if an axis is zero or the two are parallel.
 std::optional<Affine> frame(const Vec3& location, const Vec3& z_axis, const Vec3& x_axis) {
   const Vec3 z = normalized(z_axis), along = normalized(x_axis), y = normalized(cross(z, along));
@@ -21,8 +18,6 @@ std::optional<Affine> frame(const Vec3& location, const Vec3& z_axis, const Vec3
   return Affine{.columns = {normalized(cross(y, z)), y, z}, .translation = location};
 }
 
-/// Files print angles with 15 digits or fewer: a latitude within this of a pole is taken as one.
-constexpr double printed = 1e-9;
 void snap_pole(double& latitude) {
   if (std::abs(std::abs(latitude) - pi / 2) <= printed) latitude = std::copysign(pi / 2, latitude);
 }

@@ -71,9 +71,9 @@ class LoopReader {
   /// Reads a curve on the surface. Sets unread_ if its curves are of other classes.
   Result<ReadCurve> read_curve() {
     numbers_.integer("the flag of the better curve", 0, 1);
-    const std::int64_t flat = numbers_.integer("the class of a curve in the parameters", 0, 999);
+    const std::int64_t kind = numbers_.integer("the class of a curve in the parameters", 0, 999);
     const std::int64_t spatial = numbers_.integer("the class of a curve in space", 0, 999);
-    Result<ReadCurve> curve = read_flat(flat);
+    Result<ReadCurve> curve = read_flat(kind);
     if (curve && !unread_ && spatial != 0) skip_spatial(spatial);
     if (!numbers_.ok()) return numbers_.status();
     return curve;

@@ -11,7 +11,7 @@ namespace {
 
 /// The data that a call of Embree carries to the callback. Embree's context comes first, so that a pointer to it is one
 /// to this.
-struct Call {
+struct BoxCall {
   EmbreeContext context;
   EmbreeBoxes::Visit visit;
   std::size_t count;                             ///< number of lines
@@ -33,7 +33,7 @@ struct EmbreeBoxes::State {
 
   /// Embree 3 passes lanes that it calls valid but that have no ray of this call: see embree_leaves.cpp.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
-    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    BoxCall& call = *reinterpret_cast<BoxCall*>(arguments->context);
     const unsigned count = arguments->N;
     RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
     unsigned lanes = 0;
@@ -86,7 +86,7 @@ Status EmbreeBoxes::build(std::vector<Box3> boxes, const Execution& execution) {
 }
 
 void EmbreeBoxes::visit(std::span<const RayLine* const> lines, Visit visit) const {
-  Call call{embree_context(), visit, lines.size(), {}};
+  BoxCall call{embree_context(), visit, lines.size(), {}};
   for (std::size_t k = 0; k < lines.size(); ++k) call.enter[k] = static_cast<float>(lines[k]->enter);
   if (lines.size() == 1) {
     RTCRayHit ray{};

@@ -17,7 +17,7 @@ namespace {
 
 /// The data that a call of Embree carries to the callbacks. Embree's context comes first, so that a pointer to it is
 /// one to this. Arrays are indexed by the ids of the packet's rays.
-struct Call {
+struct LeafCall {
   EmbreeContext context;
   SearchSpace* space;
   std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
@@ -49,7 +49,7 @@ struct EmbreeLeaves::State {
   /// Searches a leaf for the valid rays of a call, then calls `then(k, ray, query)` for each. On machines without wider
   /// vectors Embree 3 splits 16 rays into eights or fours; a part without a ray of ours has lanes that it calls valid.
   template <class IdOf, class Then>
-  void search(unsigned leaf, Call& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
+  void search(unsigned leaf, LeafCall& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
     unsigned lanes = 0, places = 0;
     for (unsigned k = 0; k < count; ++k) {
       const unsigned ray = id_of(k), is_ours = static_cast<unsigned>(valid[k]) & call.used >> ray & 1u;
@@ -72,7 +72,7 @@ struct EmbreeLeaves::State {
   /// Moves the end of Embree's ray to the closest root, rounded up by the padding of boxes. For one ray or a packet.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    LeafCall& call = *reinterpret_cast<LeafCall*>(arguments->context);
     const unsigned count = arguments->N;
     RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
     state.search(
@@ -85,7 +85,7 @@ struct EmbreeLeaves::State {
 
   static void occluded(const RTCOccludedFunctionNArguments* arguments) {
     const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
-    Call& call = *reinterpret_cast<Call*>(arguments->context);
+    LeafCall& call = *reinterpret_cast<LeafCall*>(arguments->context);
     const unsigned count = arguments->N;
     state.search(
         arguments->primID, call, count, arguments->valid,
@@ -148,7 +148,7 @@ Status EmbreeLeaves::refit(double tolerance, const Execution& execution) {
 }
 
 void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
-  Call call;
+  LeafCall call;
   call.context = embree_context();
   call.space = &space;
   RTCRayHit hit{};
@@ -167,7 +167,7 @@ void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
 }
 
 void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space) const {
-  Call call;
+  LeafCall call;
   call.context = embree_context();
   call.space = &space;
   RTCRayHit16 hit;

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "base/impl_access.h"
+#include "base/infinity.h"
 #include "trim/trim_region_impl.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int parts_per_piece = 16;
 
 /// How far a side of a rectangle may be off.

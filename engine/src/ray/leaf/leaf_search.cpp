@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/infinity.h"
 #include "ray/net/bounded_step.h"
 #include "ray/net/edge_on.h"
 #include "ray/net/projected_net.h"
@@ -153,7 +154,6 @@ class LeafSearch {
   /// Takes the nearest corner of a part that lies on the ray. Where loops cut the leaf, the part may be kept elsewhere
   /// than at its corners: then that is the nearest kept point of a grid.
   void take_nearest_corner(int slot, double from) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr int finest = 16;
     const int rate = query_.trims == nullptr ? 1 : finest;
     NetParameters nearest;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "base/infinity.h"
 #include "ray/net/cubic_net.h"
 #include "tessera/geometry.h"
 
@@ -12,7 +12,6 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr double unit = 0x1p-24;  // rounding of float
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double reach = kernel::RayLeaf::reach;
 // Bounds the error in float of a component of a ray's point near the scene: its start rounds by 2^-24, its direction by
 // 2^-25 over 3.5, the centre less the start by 2^-23, the product by 2^-23; with a margin.

@@ -1,4 +1,5 @@
 #include "ray/line/ray_segment.h"
+#include "base/infinity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,6 @@ constexpr double segment_rounding = 4 * std::numeric_limits<double>::epsilon(); 
 
 /// Narrows [near, far] to where origin + s * direction lies in [lower, upper].
 void clip(double origin, double direction, double lower, double upper, double& near, double& far) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double parallel = 1e-300;  // of a unit vector: the reciprocal is finite
   if (std::abs(direction) < parallel) {
     if (origin < lower || origin > upper) far = -infinity;

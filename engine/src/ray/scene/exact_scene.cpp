@@ -33,7 +33,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double smallest_size = 1e-140, largest_size = 1e140;  // squares of lengths stay normal numbers
 constexpr double default_tolerance = 2e-12;                     // share of the size
 constexpr std::size_t max_leaves = 0xffffffff;
 constexpr double max_bend = 1;     // share of a piece's length
@@ -138,7 +137,7 @@ Status ExactScene::build(const Execution& execution) {
     return Status(StatusCode::invalid_argument, "the ray scene takes " + counted(own_patches(), "patch", "patches") +
                                                     ", the set has " + std::to_string(set().patch_count()));
   size_ = box->diagonal();
-  if (!(size_ >= smallest_size && size_ <= largest_size))
+  if (!(size_ >= smallest_exact && size_ <= largest_exact))
     return Status(StatusCode::unsupported,
                   "an exact ray scene holds models of a size from 1e-140 to 1e140: scale the model");
   frame_ = SceneFrame::around(*box);

@@ -17,6 +17,9 @@ namespace tessera::inline abi_0_1 {
 /// Limits steps to the range of Hit::steps.
 inline std::uint16_t saturated_u16(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
 
+/// The sizes of exact scenes: squares of lengths stay normal numbers.
+inline constexpr double smallest_exact = 1e-140, largest_exact = 1e140;
+
 /// Stays in place while its ray scene lives. Const calls from any number of threads.
 class ExactSource {
  public:

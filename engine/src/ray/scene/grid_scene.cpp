@@ -23,7 +23,7 @@ namespace {
 
 constexpr int max_rate = 4096;
 // Products of three lengths must stay in float's range on a facet far smaller than the model, and on the whole model.
-constexpr double smallest_size = 1e-9, largest_size = 1e12;
+constexpr double smallest_grid = 1e-9, largest_grid = 1e12;
 // Facets lie before or behind the surface, so rays are traced beyond their ends by this multiple of the bound on the
 // distance. It is above 1 for rays that meet the surface at less than a right angle.
 constexpr double margin_deviations = 4;
@@ -119,7 +119,7 @@ Status GridScene::build(const Execution& execution) {
   set_box_ = set().box();
   size_ = set_box_.diagonal();
   const double reach = std::max(max_abs(set_box_.lower - set().origin()), max_abs(set_box_.upper - set().origin()));
-  if (!(size_ >= smallest_size && reach <= largest_size)) {
+  if (!(size_ >= smallest_grid && reach <= largest_grid)) {
     return Status(StatusCode::unsupported, "a ray scene holds models of a size from 1e-9 to 1e12: scale the model");
   }
   if (!has_holes_ && !regions_.any()) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/infinity.h"
 #include "ray/embree/embree_boxes.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/line/ray_lines.h"
@@ -23,9 +24,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double smallest_size = 1e-140, largest_size = 1e140;  // as for exact scenes
 
 struct Instance {
   const RayScene::Impl* scene;
@@ -140,7 +139,7 @@ Status InstanceScene::build(const Execution& execution) {
         std::max(spawn_offset_, instance.to_world.norm_bound() * instance.scene->spawn_offset() +
                                     8 * epsilon * std::max(max_abs(boxes[k].lower), max_abs(boxes[k].upper)));
   }
-  if (!(box_.diagonal() >= smallest_size && box_.diagonal() <= largest_size))
+  if (!(box_.diagonal() >= smallest_exact && box_.diagonal() <= largest_exact))
     return Status(StatusCode::unsupported,
                   "a scene of instances is limited to sizes from 1e-140 to 1e140: scale the model");
   frame_ = SceneFrame::around(box_);

@@ -1,11 +1,11 @@
 #include "tessera/ray_scene.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/infinity.h"
 #include "base/text.h"
 #include "eval/view_checks.h"
 #include "ray/scene/batch_filter.h"
@@ -17,7 +17,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <class T>
 class RayArrays final : public RayReader {

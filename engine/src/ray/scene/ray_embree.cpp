@@ -18,8 +18,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double smallest_size = 1e-15;
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr double smallest_patch = 1e-15;
 
 // Embree tests boxes of user geometries with a ray from `origin` in float, in robust scenes as in others. A side of a
 // box is then off by at most 6 * 2^-24 (|side| + |origin|): the reciprocal of the direction rounds by 4 units of 2^-24,
@@ -137,7 +136,7 @@ void occlude_scene(const RTCOccludedFunctionNArguments* arguments) {
   const SceneCall call(arguments, arguments->ray);
   for (unsigned k = 0; k < arguments->N; ++k) {
     RTCHit hit;
-    if (arguments->valid[k] != 0 && call.meet(k, hit)) RTCRayN_tfar(arguments->ray, arguments->N, k) = -infinity;
+    if (arguments->valid[k] != 0 && call.meet(k, hit)) RTCRayN_tfar(arguments->ray, arguments->N, k) = -std::numeric_limits<float>::infinity();
   }
 }
 
@@ -150,11 +149,11 @@ Result<const ExactSource*> usable_source(const RayScene& scene) {
   if (!source->fresh())
     return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");
   const Box3 box = scene.box();
-  if (!(std::max(max_abs(box.lower), max_abs(box.upper)) <= max_ray_component && box.diagonal() >= smallest_size))
+  if (!(std::max(max_abs(box.lower), max_abs(box.upper)) <= max_ray_component && box.diagonal() >= smallest_patch))
     return Status(StatusCode::unsupported, "the model has the size " + text(box.diagonal()) + " and reaches " +
                                                text(std::max(max_abs(box.lower), max_abs(box.upper))) +
                                                " from zero; Embree needs a size of at " + "least " +
-                                               text(smallest_size) + " and at most " + text(max_ray_component) +
+                                               text(smallest_patch) + " and at most " + text(max_ray_component) +
                                                " from zero: move or scale the model");
   return source;
 }

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "ray/tube/edge_tubes.h"
+#include "base/infinity.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_points = 4096;  // of curves, for one ray and one tube
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double fine = 1e-3;  // share of the gap up to which a curve may leave its chord
 
 /// A part of a chord's curve: it lies within `off` of the line between its ends.

@@ -80,6 +80,8 @@ Jet correction(const Jet& d, const Vec3& r_a0, const Vec3& r_a1, const Blend::Je
 
 }  // namespace
 
+CoonsPatch::CoonsPatch(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
 Result<CoonsPatch> CoonsPatch::make(const CoonsBorders& borders, const CoonsOptions& options) {
   return guarded([&]() -> Result<CoonsPatch> {
     for (std::size_t k : {std::size_t{0}, std::size_t{2}}) {

@@ -46,6 +46,8 @@ Result<CurveJet> jet_by_differences(const ParametricCurve& curve, double t) {
 
 }  // namespace
 
+ParametricCurve::ParametricCurve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
 Result<ParametricCurve> ParametricCurve::make(CurveFunctions functions, const Interval& domain) {
   return guarded([&]() -> Result<ParametricCurve> {
     if (!functions.position) return Status(StatusCode::invalid_argument, "the curve has no function for its position");

@@ -64,6 +64,8 @@ double bound_or_infinity(double bound) { return bound >= 0 ? bound : std::numeri
 
 }  // namespace
 
+ParametricSurface::ParametricSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
 Result<ParametricSurface> ParametricSurface::make(SurfaceFunctions functions, const Domain& domain) {
   return guarded([&]() -> Result<ParametricSurface> {
     if (!functions.position)

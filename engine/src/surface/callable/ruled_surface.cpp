@@ -9,8 +9,8 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 /// A point's parameter along the curves, and the weights of the two curves.
-struct Place {
-  Place(const RuledSurface& surface, double u, double v) {
+struct RuledPoint {
+  RuledPoint(const RuledSurface& surface, double u, double v) {
     const bool along_u = surface.straight() == Direction::v;
     const Domain d = surface.domain();
     const double across = along_u ? v : u, from = along_u ? d.v0 : d.u0, to = along_u ? d.v1 : d.u1;
@@ -26,6 +26,8 @@ struct Place {
 };
 
 }  // namespace
+
+RuledSurface::RuledSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
 
 Result<RuledSurface> RuledSurface::make(const BorderCurve& first, const BorderCurve& second, const Interval& across,
                                         Direction straight) {
@@ -50,7 +52,7 @@ bool RuledSurface::is_exact() const { return tessera::is_exact(first()) && tesse
 
 Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v) {
   return guarded([&]() -> Result<SurfaceJet> {
-    const Place place(surface, u, v);
+    const RuledPoint place(surface, u, v);
     const auto first = evaluate_jet(surface.first(), place.along, ruled_curve_names[0]);
     if (!first) return first.status();
     const auto second = evaluate_jet(surface.second(), place.along, ruled_curve_names[1]);
@@ -69,7 +71,7 @@ Result<SurfaceJet> evaluate_jet(const RuledSurface& surface, double u, double v)
 
 Result<Vec3> position(const RuledSurface& surface, double u, double v) {
   return guarded([&]() -> Result<Vec3> {
-    const Place place(surface, u, v);
+    const RuledPoint place(surface, u, v);
     const auto first = position(surface.first(), place.along, ruled_curve_names[0]);
     if (!first) return first.status();
     const auto second = position(surface.second(), place.along, ruled_curve_names[1]);

@@ -136,6 +136,10 @@ Status check_entries(int degree, std::span<const double> entries) {
 
 }  // namespace
 
+BasisMatrix::BasisMatrix(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
+bool operator==(const BasisMatrix& a, const BasisMatrix& b) { return a.data_ == b.data_ || *a.data_ == *b.data_; }
+
 Result<BasisMatrix> BasisMatrix::bezier(int degree) {
   return guarded([&]() -> Result<BasisMatrix> {
     if (Status status = check_degree(degree, "degree of a basis matrix"); !status.ok()) return status;

@@ -53,6 +53,8 @@ void horner_step(Taylor& p, double t, const DoubleDouble& a) {
 
 }  // namespace
 
+ExplicitPolynomial::ExplicitPolynomial(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
 Result<ExplicitPolynomial> ExplicitPolynomial::make(int degree_x, int degree_y, std::span<const double> coefficients,
                                                     const Domain& rectangle) {
   return guarded([&]() -> Result<ExplicitPolynomial> {

@@ -48,6 +48,8 @@ Vec3 blended(const TensorPatch& patch, const Blending& f, const Blending& g, int
 
 }  // namespace
 
+TensorPatch::TensorPatch(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
 Result<TensorPatch> TensorPatch::make(const BasisMatrix& basis_u, const BasisMatrix& basis_v,
                                       std::span<const Vec3> geometry, const Domain& domain) {
   return guarded([&]() -> Result<TensorPatch> {

@@ -80,6 +80,8 @@ QuadricParameters raw_parameters(const Quadric& quadric, const Vec3& p, int shee
 
 }  // namespace
 
+QuadricPiece::QuadricPiece(const Data& data) : data_(std::make_shared<const Data>(data)) {}
+
 Result<QuadricPiece> QuadricPiece::make(const Quadric& quadric, const Domain& range, int sheet) {
   return guarded([&]() -> Result<QuadricPiece> {
     const QuadricKind kind = quadric.kind();

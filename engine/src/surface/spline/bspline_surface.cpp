@@ -36,17 +36,14 @@ Status check_polynomial(int degree_u, std::span<const double> knots_u, int degre
   return check_range(degree_v, knots_v, domain->v0, domain->v1, "the domain in v");
 }
 
-template <class T>
-std::vector<T> copy(std::span<const T> values) {
-  return {values.begin(), values.end()};
-}
-
 }  // namespace
+
+BSplineSurface::BSplineSurface(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
 
 Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
                                                   std::span<const double> knots_v, std::span<const Vec3> points,
                                                   std::optional<Domain> domain) {
-  return guarded([&] { return polynomial(degree_u, knots_u, degree_v, knots_v, copy(points), domain); });
+  return guarded([&] { return polynomial(degree_u, knots_u, degree_v, knots_v, copied(points), domain); });
 }
 
 Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const double> knots_u, int degree_v,
@@ -55,14 +52,15 @@ Result<BSplineSurface> BSplineSurface::polynomial(int degree_u, std::span<const 
   return guarded([&]() -> Result<BSplineSurface> {
     if (Status status = check_polynomial(degree_u, knots_u, degree_v, knots_v, points, domain); !status.ok())
       return status;
-    return BSplineSurface({degree_u, degree_v, copy(knots_u), copy(knots_v), {}, std::move(points), *domain});
+    return BSplineSurface({degree_u, degree_v, copied(knots_u), copied(knots_v), {}, std::move(points), *domain});
   });
 }
 
 Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const double> knots_u, int degree_v,
                                                 std::span<const double> knots_v, std::span<const Vec3> points,
                                                 std::span<const double> weights, std::optional<Domain> domain) {
-  return guarded([&] { return rational(degree_u, knots_u, degree_v, knots_v, copy(points), copy(weights), domain); });
+  return guarded(
+      [&] { return rational(degree_u, knots_u, degree_v, knots_v, copied(points), copied(weights), domain); });
 }
 
 Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const double> knots_u, int degree_v,
@@ -78,7 +76,7 @@ Result<BSplineSurface> BSplineSurface::rational(int degree_u, std::span<const do
     if (Status status = check_weights(weights, place); !status.ok()) return status;
     if (all_equal(weights)) weights = std::vector<double>();
     return BSplineSurface(
-        {degree_u, degree_v, copy(knots_u), copy(knots_v), std::move(weights), std::move(points), *domain});
+        {degree_u, degree_v, copied(knots_u), copied(knots_v), std::move(weights), std::move(points), *domain});
   });
 }
 

@@ -13,7 +13,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr auto place = [](std::size_t k) { return "[" + std::to_string(k) + "]"; };
+constexpr auto in_list = [](std::size_t k) { return "[" + std::to_string(k) + "]"; };
 
 Status check_size(int degree, std::size_t points, std::size_t knots) {
   const std::size_t wanted = points + static_cast<std::size_t>(degree) + 1;
@@ -28,14 +28,9 @@ Status check_b_spline(int degree, std::span<const Vec3> points, std::span<const 
   if (Status status = check_degree(degree, "the degree"); !status.ok()) return status;
   if (Status status = check_size(degree, points.size(), knots.size()); !status.ok()) return status;
   if (Status status = check_knots(degree, knots, "knots"); !status.ok()) return status;
-  if (Status status = check_points(points, place); !status.ok()) return status;
+  if (Status status = check_points(points, in_list); !status.ok()) return status;
   if (!domain) domain = Interval{knots[static_cast<std::size_t>(degree)], knots[points.size()]};
   return check_range(degree, knots, domain->from, domain->to, "the domain");
-}
-
-template <class T>
-std::vector<T> copy(std::span<const T> values) {
-  return {values.begin(), values.end()};
 }
 
 /// The points that act at t, in a frame that keeps their sums in range.
@@ -68,6 +63,10 @@ struct ActingPoints {
 
 }  // namespace
 
+Curve::Curve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
+bool operator==(const Curve& a, const Curve& b) { return a.data_ == b.data_ || *a.data_ == *b.data_; }
+
 Result<Curve> Curve::bezier(std::span<const Vec3> points, std::span<const double> weights, const Interval& domain) {
   return guarded([&]() -> Result<Curve> {
     const int degree = static_cast<int>(std::min<std::size_t>(points.size(), 1000)) - 1;
@@ -83,7 +82,7 @@ Result<Curve> Curve::b_spline(int degree, std::span<const Vec3> points, std::spa
                               std::optional<Interval> domain) {
   return guarded([&]() -> Result<Curve> {
     if (Status status = check_b_spline(degree, points, knots, domain); !status.ok()) return status;
-    return Curve({degree, copy(points), {}, copy(knots), *domain});
+    return Curve({degree, copied(points), {}, copied(knots), *domain});
   });
 }
 
@@ -95,9 +94,9 @@ Result<Curve> Curve::nurbs(int degree, std::span<const Vec3> points, std::span<c
       return Status(StatusCode::count_mismatch, std::to_string(points.size()) + " points need " +
                                                     std::to_string(points.size()) + " weights, found " +
                                                     std::to_string(weights.size()));
-    if (Status status = check_weights(weights, place); !status.ok()) return status;
+    if (Status status = check_weights(weights, in_list); !status.ok()) return status;
     if (all_equal(weights)) weights = {};
-    return Curve({degree, copy(points), copy(weights), copy(knots), *domain});
+    return Curve({degree, copied(points), copied(weights), copied(knots), *domain});
   });
 }
 

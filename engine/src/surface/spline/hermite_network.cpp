@@ -71,6 +71,8 @@ std::size_t span_at(std::span<const double> knots, double t) {
 
 }  // namespace
 
+HermiteNetwork::HermiteNetwork(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
+
 Status check_nodes(std::size_t count_u, std::size_t count_v, std::span<const HermiteNode> nodes) {
   const std::string shape = std::to_string(count_u) + " x " + std::to_string(count_v) + " nodes";
   if (count_u < 2 || count_v < 2)

@@ -94,6 +94,8 @@ void solve_vandermonde(const std::array<double, 4>& t, Vec3* values, std::size_t
 
 }  // namespace
 
+HermitePatch::HermitePatch(const Data& data) : data_(std::make_shared<const Data>(data)) {}
+
 HermitePatch::Grid geometry_of(const HermitePatch::Corners& corners) {
   Grid g;
   for (int a = 0; a < 2; ++a)

@@ -1,5 +1,8 @@
 #pragma once
-// Conversions from the directions of curves and surfaces to knot lines.
+// Conversions from the directions of curves and surfaces to knot lines, and copies of their lists.
+
+#include <span>
+#include <vector>
 
 #include "basis/knots.h"
 #include "tessera/curve.h"
@@ -15,6 +18,11 @@ inline KnotLine line_u(const BSplineSurface& surface) {
 }
 inline KnotLine line_v(const BSplineSurface& surface) {
   return {surface.degree_v(), surface.knots_v(), surface.domain().v0, surface.domain().v1};
+}
+
+template <class T>
+std::vector<T> copied(std::span<const T> values) {
+  return {values.begin(), values.end()};
 }
 
 }  // namespace tessera::inline abi_0_1

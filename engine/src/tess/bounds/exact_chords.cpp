@@ -36,7 +36,7 @@ struct ChordBlocks::Exact {
 
 namespace {
 
-using Net = std::array<double, (max_degree + 1) * (max_degree + 1) * 4 * PatchSet::lanes>;
+using BlockNet = std::array<double, (max_degree + 1) * (max_degree + 1) * 4 * PatchSet::lanes>;
 
 /// Packs the patch into its lane of a net, laid out as in ExactChordJob.
 void pack(const BezierPatch& patch, double* lane) {
@@ -132,7 +132,7 @@ void ChordBlocks::take_exact(const BezierPatch& patch, const Exact& exact, bool 
 
 void ChordBlocks::find_exact(const PatchSet::Impl& set, std::size_t block, bool any_patch, Exact& exact) {
   const BlockGroup& group = set.group_of_block(block);
-  Net net;
+  BlockNet net;
   const auto pack_lane = [&](std::size_t lane, std::size_t place) {
     pack(set.patches[set.lane_patches[block * lanes + lane]], net.data() + place);
   };

@@ -9,13 +9,13 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int parts = Segments::parts, middle = parts / 2;
-constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
+constexpr int parts = Segments::parts, half_parts = parts / 2;
+constexpr std::size_t index(int k) { return static_cast<std::size_t>(k); }
 
 /// With fewer cells nothing is saved that is worth the time.
 constexpr double min_cells = 6;
 /// The least share of the cells to save.
-constexpr double min_saving = 0.03;
+constexpr double min_grading_saving = 0.03;
 constexpr int rounds = 2;
 
 /// The rates in the eighths of a parameter, as real numbers.
@@ -41,8 +41,8 @@ class Needs {
     const auto scale = static_cast<float>((1 + 0x1p-18) / limits.turning->without_rounding(limits.angle));
     for (int i = 0; i < parts; ++i)
       for (int j = 0; j < parts; ++j) {
-        u_by_v_[at(j)][at(i)] = u_by_u_[at(i)][at(j)] = scale * limits.turning->u(i, j);
-        v_by_v_[at(j)][at(i)] = v_by_u_[at(i)][at(j)] = scale * limits.turning->v(i, j);
+        u_by_v_[index(j)][index(i)] = u_by_u_[index(i)][index(j)] = scale * limits.turning->u(i, j);
+        v_by_v_[index(j)][index(i)] = v_by_u_[index(i)][index(j)] = scale * limits.turning->v(i, j);
       }
   }
 
@@ -59,8 +59,8 @@ class Needs {
     const auto add = [&](const ChordBound* bound, double limit) {
       for (std::size_t quarter = 0; bound && quarter < 4; ++quarter) {
         const auto rate = static_cast<float>(std::sqrt(bound->pieces()[5 + quarter].vv / (8 * limit * share)));
-        for (std::size_t j = 0; j < middle; ++j)
-          rates[quarter % 2 * middle + j] = std::max(rates[quarter % 2 * middle + j], rate);
+        for (std::size_t j = 0; j < half_parts; ++j)
+          rates[quarter % 2 * half_parts + j] = std::max(rates[quarter % 2 * half_parts + j], rate);
       }
     };
     add(limits_.chord, limits_.distance);
@@ -90,7 +90,7 @@ class Needs {
   PieceRates by_halves(PieceRates needed, const PieceRates& other, bool other_is_u) const {
     if (!is_for_halves()) return needed;
     for (int half = 0; half < 2; ++half) {
-      const double fixed = *std::min_element(other.begin() + half * middle, other.begin() + (half + 1) * middle);
+      const double fixed = *std::min_element(other.begin() + half * half_parts, other.begin() + (half + 1) * half_parts);
       for (int wanted = 0; wanted < 2; ++wanted) {
         const int quarter = other_is_u ? 2 * half + wanted : 2 * wanted + half;
         double rate = least_rate;
@@ -99,7 +99,7 @@ class Needs {
         if (limits_.picture)
           rate = std::max(rate, limits_.picture->needed_in_quarter(limits_.pixels, fixed, other_is_u, quarter));
         const auto least = static_cast<float>(std::min(rate * (1 + 0x1p-20 + 0x1p-23 * rate), 1e6));
-        for (int e = wanted * middle; e < (wanted + 1) * middle; ++e) needed[at(e)] = std::max(needed[at(e)], least);
+        for (int e = wanted * half_parts; e < (wanted + 1) * half_parts; ++e) needed[index(e)] = std::max(needed[index(e)], least);
       }
     }
     return needed;
@@ -140,8 +140,8 @@ PieceRates rounded(PieceRates rates, bool by_halves, bool up) {
     for (std::size_t e = begin; e < end; ++e) rates[e] *= whole / count;
   };
   if (by_halves) {
-    round(0, middle);
-    round(middle, parts);
+    round(0, half_parts);
+    round(half_parts, parts);
   } else {
     round(0, parts);
   }
@@ -151,7 +151,7 @@ PieceRates rounded(PieceRates rates, bool by_halves, bool up) {
 /// The number of segments that rates take.
 float count(const PieceRates& rates, bool by_halves) {
   float sum[2] = {0, 0};
-  for (std::size_t e = 0; e < parts; ++e) sum[by_halves && e >= middle] += rates[e] / parts;
+  for (std::size_t e = 0; e < parts; ++e) sum[by_halves && e >= half_parts] += rates[e] / parts;
   return std::ceil(sum[0]) + std::ceil(sum[1]);
 }
 
@@ -173,14 +173,14 @@ bool are_in_range(PatchSegments segments) {
 
 PieceRates rates_of(Segments segments) {
   PieceRates rates;
-  for (int e = 0; e < parts; ++e) rates[at(e)] = static_cast<float>(segments.rate_in(e).value());
+  for (int e = 0; e < parts; ++e) rates[index(e)] = static_cast<float>(segments.rate_in(e).value());
   return rates;
 }
 
 }  // namespace
 
 std::optional<PatchSegments> graded_segments(const CellLimits& limits, Rates uniform) {
-  const double most = (1 - min_saving) * uniform.u * uniform.v;
+  const double most = (1 - min_grading_saving) * uniform.u * uniform.v;
   if (double(uniform.u) * uniform.v < min_cells) return {};
   if (!limits.is_for_halves() && limits.turning->is_even()) return {};
   const Needs needs(limits);

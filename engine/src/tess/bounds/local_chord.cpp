@@ -10,12 +10,12 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
 /// Half the width of a triangle's box. A float parameter lies up to 2^-25 beside i / rate.
 double margin(int least) { return 0.5 / least + 0x1p-24; }
 
-constexpr Domain whole{0, 1, 0, 1};
+constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr Domain whole_domain{0, 1, 0, 1};
 /// Part (i, j) of the whole, divided into parts.u x parts.v.
 Domain part(Rates parts, int i, int j) {
   const auto begin = [](int k, int count) { return double(k) / count; };
@@ -114,7 +114,7 @@ void add_uniform(const DerivativeNets& patch, double distance, FunctionRef<bool(
   for (const Pass pass : {Pass{0.65, 16}, Pass{0.85, 32}}) {
     const Rates rates = choices.fewest().segments.rates();
     if (rates.u * rates.v < 2) break;
-    const LocalChord local(patch, whole, shrunk(rates, pass.share), rates, pass.pieces);
+    const LocalChord local(patch, whole_domain, shrunk(rates, pass.share), rates, pass.pieces);
     const auto keeps = [&](Rates r) { return local.keeps(r, distance) && also(r); };
     const int max_u = std::min(max_rate, rates.u + rates.u / 2 + 1);
     for (int u = local.least().u; u <= max_u; ++u) {

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "base/aligned.h"
+#include "base/infinity.h"
 #include "base/text.h"
 #include "kernel/table/kernel_table.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int max_pixels = 1 << 20;
 
 Status bad(const std::string& message) { return {StatusCode::invalid_argument, message}; }

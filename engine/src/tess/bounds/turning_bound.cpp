@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
+#include "base/infinity.h"
 #include "tess/bounds/normal_net.h"
 #include "tess/bounds/rounded_up.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Pieces of up to 2^-max_depth of each parameter are looked at; rectangles have 2^-rectangle_depth.
 constexpr int max_depth = 6, rectangle_depth = 3;
 /// A bound is good enough within this factor of the turning at corners. Pieces with corners that turn by less than a
@@ -25,7 +24,7 @@ constexpr double negligible = 0x1p-20;
 constexpr double max_turning = 32;
 
 /// The control points of a piece of the normal's net, `[component][i][j]`.
-struct Net {
+struct NormalPiece {
   int rows, columns;
   double* at[3];
 
@@ -37,7 +36,7 @@ struct Net {
 };
 
 /// Cuts each row or column of a net at 1/2 by de Casteljau: `high` becomes the upper half, `low` the lower one.
-void cut(const Net& high, const Net& low, bool along_u) {
+void cut(const NormalPiece& high, const NormalPiece& low, bool along_u) {
   const int rows = high.rows, columns = high.columns;
   for (int c = 0; c < 3; ++c) {
     double *const from = high.at[c], *const to = low.at[c];
@@ -83,7 +82,7 @@ double largest(const double* numbers, int count) {
 class Piece {
  public:
   /// `scale`: the factor from derivatives by the piece's parameters to those by the patch's.
-  Piece(const Net& net, double scale, double rounding, const Scratch& scratch)
+  Piece(const NormalPiece& net, double scale, double rounding, const Scratch& scratch)
       : net_(net), scratch_(scratch), scale_(scale), rounding_(rounding) {
     const double *const x = net.at[0], *const y = net.at[1], *const z = net.at[2];
     const int count = net.count();
@@ -153,7 +152,7 @@ class Piece {
     return (most + 4 * rounding_) * (1 + 0x1p-40);
   }
 
-  const Net& net_;
+  const NormalPiece& net_;
   const Scratch& scratch_;
   double scale_, rounding_;
   Vec3 axis_;
@@ -174,7 +173,7 @@ class TurningSearch {
         bound_(bound) {
     double* const start = memory_.get() + size_of_net() * (4 * max_depth + 1);
     scratch_ = {start, start + rows_ * columns_, start + 2 * rows_ * columns_};
-    const Net whole = net(0, 0);
+    const NormalPiece whole = net(0, 0);
     for (int k = 0; k < whole.count(); ++k) {
       const Vec3& n = normal.net.at[static_cast<std::size_t>(k)];
       whole.at[0][k] = n.x, whole.at[1][k] = n.y, whole.at[2][k] = n.z;
@@ -185,14 +184,14 @@ class TurningSearch {
  private:
   std::size_t size_of_net() const { return 3 * static_cast<std::size_t>(rows_ * columns_); }
   /// The memory of piece `quarter` at a depth; at depth 0 there is one piece.
-  Net net(int depth, int quarter) const {
+  NormalPiece net(int depth, int quarter) const {
     const std::size_t place = depth == 0 ? 0 : static_cast<std::size_t>(4 * (depth - 1) + quarter + 1);
     double* const start = memory_.get() + size_of_net() * place;
     return {rows_, columns_, {start, start + rows_ * columns_, start + 2 * rows_ * columns_}};
   }
 
   /// `i` and `j`: the piece's place among those of its depth.
-  void visit(const Net& net, int depth, int i, int j) {
+  void visit(const NormalPiece& net, int depth, int i, int j) {
     if (!bound_.is_finite_) return;
     const double scale = std::ldexp(1, depth);
     const Piece piece(net, scale, rounding_, scratch_);
@@ -206,7 +205,7 @@ class TurningSearch {
       take(bound, depth, i, j);
       return;
     }
-    const Net quarter[4] = {this->net(depth + 1, 0), this->net(depth + 1, 1), this->net(depth + 1, 2),
+    const NormalPiece quarter[4] = {this->net(depth + 1, 0), this->net(depth + 1, 1), this->net(depth + 1, 2),
                             this->net(depth + 1, 3)};
     std::copy_n(net.at[0], size_of_net(), quarter[3].at[0]);
     cut(quarter[3], quarter[1], true);

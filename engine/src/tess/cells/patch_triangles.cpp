@@ -1,6 +1,7 @@
 #include "tess/cells/patch_triangles.h"
 
 #include "surface/net/collapsed_edges.h"
+#include "tess/cells/write_triangle.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -41,13 +42,6 @@ EdgeMask edges_of_cell(EdgeMask patch, Rates rates, int iu, int iv) {
   if (iv == 0) at.add(Edge::v0);
   if (iv == rates.v - 1) at.add(Edge::v1);
   return {static_cast<std::uint8_t>(at.bits & patch.bits)};
-}
-
-std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  to[0] = a;
-  to[1] = b;
-  to[2] = c;
-  return to + 3;
 }
 
 /// Sums up what is left of a patch's cells: `all` for each, but count(remaining()) for those at collapsed edges.

@@ -2,15 +2,10 @@
 
 #include <algorithm>
 
+#include "tess/cells/write_triangle.h"
+
 namespace tessera::inline abi_0_1 {
 namespace {
-
-std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  to[0] = a;
-  to[1] = b;
-  to[2] = c;
-  return to + 3;
-}
 
 /// A row of points: where segments k = first .. last begin, with vertices `vertex(k)`.
 template <class Vertex>

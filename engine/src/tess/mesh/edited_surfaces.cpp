@@ -4,15 +4,12 @@
 #include <string>
 
 #include "base/text.h"
+#include "eval/touched_blocks.h"
 #include "parallel/parallel_for.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
-
-Status edit_error(StatusCode code, std::size_t edit, const std::string& why) {
-  return {code, "edit " + std::to_string(edit) + ": " + why, static_cast<std::ptrdiff_t>(edit)};
-}
 
 /// Whether the patches from `first` on are those of the spline, in the order of its grid.
 bool holds(const PatchSet& set, std::uint32_t number, const EditedSpline& spline, std::size_t first) {

@@ -8,6 +8,7 @@
 #include "kernel/table/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
+#include "tess/bounds/task_size.h"
 #include "tess/mesh/proven_mesh.h"
 #include "tess/write/mesh_views.h"
 #include "tess/write/patch_writer.h"
@@ -17,7 +18,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t blocks_per_task = 8;
 constexpr double update_ends[] = {0.5, 1};  // after the proof, and after the vertices
 
 /// Notes edits when a call ends, in whichever way.

@@ -10,6 +10,7 @@
 #include "kernel/table/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
+#include "tess/bounds/task_size.h"
 #include "tess/mesh/merged_mesh.h"
 #include "tess/plan/joins.h"
 #include "tess/write/closed_vertices.h"
@@ -22,12 +23,12 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t max_patches_per_task = 64, vertices_per_task = std::size_t{1} << 15;
+constexpr std::size_t vertices_per_task = std::size_t{1} << 15;
 
 /// The patches of a task: fewer if each has many vertices, so that threads share them and a cancel is seen soon.
-std::size_t patches_per_task(const CertifiedPlan& plan) {
+std::size_t written_per_task(const CertifiedPlan& plan) {
   const std::size_t per_patch = plan.capacity().vertices / std::max<std::size_t>(1, plan.patch_count());
-  return std::clamp<std::size_t>(vertices_per_task / std::max<std::size_t>(1, per_patch), 1, max_patches_per_task);
+  return std::clamp<std::size_t>(vertices_per_task / std::max<std::size_t>(1, per_patch), 1, patches_per_task);
 }
 
 /// Progress after bounds and after rates; angles, pixels and searches take longer.
@@ -161,7 +162,7 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& plann
     const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
     const Execution quiet{.cancel = execution.cancel};
     const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
-    Status status = parallel_for(plan_.patch_count(), patches_per_task(plan_), quiet, write);
+    Status status = parallel_for(plan_.patch_count(), written_per_task(plan_), quiet, write);
     if (status.ok()) status = write_welded(weld_, plan_, set, views, quiet, [](std::size_t) { return true; });
     if (!status.ok()) return status;
   }
@@ -220,7 +221,7 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
     return {StatusCode::stale, "the plan was made for a set that other trimming loops cut"};
   const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
-  if (Status status = parallel_for(plan_.patch_count(), patches_per_task(plan_), execution, write); !status.ok())
+  if (Status status = parallel_for(plan_.patch_count(), written_per_task(plan_), execution, write); !status.ok())
     return status;
   if (execution.report) {
     execution.report->isa = isa_;

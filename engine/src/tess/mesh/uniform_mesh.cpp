@@ -12,17 +12,17 @@
 #include "kernel/table/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
+#include "tess/bounds/task_size.h"
 #include "tess/cells/patch_triangles.h"
+#include "tess/cells/segments.h"
 #include "tess/mesh/tessellation_impl.h"
+#include "tess/plan/certified_plan.h"
 #include "tess/write/mesh_views.h"
 #include "tessera/status.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int max_rate = 4096;
-constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  // the limit of 32-bit indices
-constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
 constexpr double progress_ends[] = {0.7, 1};  // after the vertices, and after all else
 
 Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }

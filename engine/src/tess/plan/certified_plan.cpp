@@ -12,13 +12,13 @@
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "tess/bounds/graded_segments.h"
+#include "tess/bounds/task_size.h"
 #include "tess/cells/f64_points.h"
 #include "tess/edges/side_curve.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
 constexpr double no_angle = std::numeric_limits<double>::infinity();
 
 /// Whether the kept segments of a patch are few enough compared with the best.

@@ -5,14 +5,9 @@
 #include <cassert>
 
 #include "parallel/parallel_for.h"
+#include "tess/bounds/task_size.h"
 
 namespace tessera::inline abi_0_1 {
-namespace {
-
-constexpr std::size_t blocks_per_task = 8;
-
-}  // namespace
-
 void PlanUpdate::Lanes::add(PatchSet::Slot slot) {
   if (bits[slot.block] == 0) blocks.push_back(slot.block);
   bits[slot.block] |= 1u << slot.lane;

@@ -8,7 +8,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double rounded = 1 + 0x1p-40;  // far above the rounding of these sums
+constexpr double rounding_factor = 1 + 0x1p-40;  // far above the rounding of these sums
 
 /// The largest difference of neighbours in a net, along one parameter: of vectors and of weights.
 struct Steps {
@@ -58,13 +58,13 @@ SpeedBound SpeedBound::of(const BezierPatch& patch) {
   const auto bound = [&](int degree, const Steps& steps) {
     const double by_hull = (steps.vector + steps.weight * reach) / lightest;
     const double by_size = patch.is_rational() ? heaviest / lightest * 2 * reach : by_hull;
-    return rounded * net.scale * degree * std::min(by_hull, by_size);
+    return rounding_factor * net.scale * degree * std::min(by_hull, by_size);
   };
   SpeedBound speed{bound(m, along_u), bound(n, along_v), 0};
   speed.product = speed.u * speed.v;
   constexpr int most_steps = 12;  // of a bicubic patch
   if (!patch.is_rational() && m * (n + 1) <= most_steps && n * (m + 1) <= most_steps)
-    speed.product = std::min(speed.product, rounded * largest_product(net) + 0x1p-40 * speed.product);
+    speed.product = std::min(speed.product, rounding_factor * largest_product(net) + 0x1p-40 * speed.product);
   return speed;
 }
 

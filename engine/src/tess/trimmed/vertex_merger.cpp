@@ -10,7 +10,7 @@ namespace tessera::inline abi_0_1 {
 namespace {
 
 /// Edges up to this many times the rounding are looked at: bounds of their lengths may be far too large.
-constexpr double reach = 1024;
+constexpr double max_edge = 1024;
 
 bool is_end(double t) { return t == 0 || t == 1; }
 /// The number of sides of the patch that a vertex lies on.
@@ -20,7 +20,7 @@ bool share_a_side(const ParameterPoint& a, const ParameterPoint& b) {
 }
 
 /// A position by its bits. (g++ 12 leaves out double(float(x)) where it vectorizes.)
-DoublePositionBits rounded(const VertexRounding& rounding, const Vec3& p) {
+DoublePositionBits rounded_position(const VertexRounding& rounding, const Vec3& p) {
   if (rounding.is_double) {
     const Vec3 moved = rounding.origin + p;
     return position_bits(std::array{moved.x, moved.y, moved.z}.data());
@@ -39,7 +39,7 @@ bool VertexMerger::find(const VertexRounding& rounding, const SpeedBound& speed,
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
       const double du = std::abs(vertices[a].u - vertices[b].u), dv = std::abs(vertices[a].v - vertices[b].v);
-      if (speed.u * du + speed.v * dv <= reach * rounding.distance) short_edges_.emplace_back(a, b);
+      if (speed.u * du + speed.v * dv <= max_edge * rounding.distance) short_edges_.emplace_back(a, b);
     }
   if (short_edges_.empty()) return false;
   parents_.resize(vertices.size());
@@ -48,7 +48,7 @@ bool VertexMerger::find(const VertexRounding& rounding, const SpeedBound& speed,
   PatchPoints points(*rounding.patch, rounding.origin);
   const auto position = [&](std::uint32_t vertex) {
     const auto [at, is_new] = positions_.try_emplace(vertex);
-    if (is_new) at->second = rounded(rounding, points.at(vertices[vertex]));
+    if (is_new) at->second = rounded_position(rounding, points.at(vertices[vertex]));
     return at->second;
   };
   bool any = false;

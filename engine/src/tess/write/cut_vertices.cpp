@@ -11,7 +11,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_per_task = 4;
+constexpr std::size_t cut_patches_per_task = 4;
 
 class CutWriter {
  public:
@@ -103,7 +103,7 @@ Status write_cut(const PatchSet::Impl& set, const CertifiedPlan& plan, std::opti
   const auto write = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) writer.write(plan.cuts()[c]);
   };
-  return parallel_for(plan.cuts().size(), patches_per_task, {.cancel = execution.cancel}, write);
+  return parallel_for(plan.cuts().size(), cut_patches_per_task, {.cancel = execution.cancel}, write);
 }
 
 }  // namespace tessera::inline abi_0_1

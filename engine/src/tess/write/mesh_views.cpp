@@ -13,7 +13,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr std::size_t patches_per_task = 1024;
+constexpr std::size_t compared_per_task = 1024;
 
 Status invalid(std::string message) { return {StatusCode::invalid_argument, std::move(message)}; }
 
@@ -150,7 +150,7 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
       return;
     }
   };
-  if (Status status = parallel_for(planned.size(), patches_per_task, {}, compare); !status.ok()) return status;
+  if (Status status = parallel_for(planned.size(), compared_per_task, {}, compare); !status.ok()) return status;
   if (!changed.found()) return {};
   return {
       StatusCode::stale,

@@ -1,0 +1,10 @@
+#pragma once
+// How planning and meshing are cut into tasks.
+
+#include <cstddef>
+
+namespace tessera::inline abi_0_1 {
+
+inline constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
+
+}  // namespace tessera::inline abi_0_1
