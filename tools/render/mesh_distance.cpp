@@ -6,6 +6,13 @@
 #include <string>
 
 namespace tessera::render {
+
+Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length2 = dot(along, along);
+  return length2 > 0 ? a + std::clamp(dot(p - a, along) / length2, 0.0, 1.0) * along : a;
+}
+
 namespace {
 
 constexpr std::size_t leaf_triangles = 4;
@@ -20,12 +27,6 @@ double squared_distance(const Vec3& p, const Box3& box) {
     sum += beside * beside;
   }
   return sum;
-}
-
-Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length2 = dot(along, along);
-  return length2 > 0 ? a + std::clamp(dot(p - a, along) / length2, 0.0, 1.0) * along : a;
 }
 
 /// The foot on the plane if it lies inside the triangle, otherwise the nearest point of the edges.

@@ -9,6 +9,9 @@
 
 namespace tessera::render {
 
+/// Returns the point of the segment from a to b that is nearest to p.
+Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b);
+
 /// A tree of boxes over the triangles of a mesh. Immutable. Threads: any number of const calls.
 class MeshDistance {
  public:

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "render/mesh_distance.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::render {
@@ -36,12 +37,6 @@ Status check_positions(const Mesh& mesh) {
     if (!is_finite(position(mesh, k)))
       return {StatusCode::non_finite, "vertex " + std::to_string(k) + " is not finite"};
   return {};
-}
-
-Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
-  const double squared = dot(b - a, b - a);
-  if (!(squared > 0)) return a;
-  return a + std::clamp(dot(point - a, b - a) / squared, 0.0, 1.0) * (b - a);
 }
 
 }  // namespace

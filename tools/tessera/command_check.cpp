@@ -10,7 +10,7 @@
 namespace tessera::cli {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> meshes;
   bool require_closed = false;
 };
@@ -48,7 +48,7 @@ std::string as_text(const std::string& mesh, const MeshReport& report) {
          line("NaN or infinite       ", report.non_finite_vertices, "  (vertices)");
 }
 
-Status run_check(const std::string& file, const Options& options, const CommonOptions& common, Timings& timings) {
+Status run_check(const std::string& file, const CheckOptions& options, const CommonOptions& common, Timings& timings) {
   std::vector<std::string> warnings;
   const Result<Mesh> mesh = [&] {
     const auto phase = timings.phase("read");
@@ -74,7 +74,7 @@ Status run_check(const std::string& file, const Options& options, const CommonOp
   return already_said(StatusCode::invalid_argument);
 }
 
-constexpr const char* footer =
+constexpr const char* check_footer =
     "Vertices at the same position, bit for bit, count as one. Open edges are no error, because a model may be open.\n"
     "The exit status is 1 only if a mesh cannot be read, holds NaN or infinity, has an index out of range, or is not\n"
     "closed with --require-closed (closed: no open and no non-manifold edges).\n"
@@ -86,14 +86,14 @@ constexpr const char* footer =
 
 void add_check(Command& tool, Session& session) {
   Command& command = tool.add_command("check", "Check meshes for cracks, flipped triangles and NaN");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   command
       .add_words("MESH", "FILE", "Files with meshes (.obj, .ply, .stl, .glb, .gltf), or patterns of their names",
                  options->meshes)
       .check(fault_of_name);
   command.add_flag("--require-closed", "Exit with 1 if a mesh is not closed", options->require_closed);
   add_common(command, session.common);
-  command.footer = footer;
+  command.footer = check_footer;
   command.choose = [options, &session] {
     session.command = [options, &session, plan = plan_jobs(options->meshes, "", {"MESH", "", false})] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {

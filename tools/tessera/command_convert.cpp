@@ -13,7 +13,7 @@
 namespace tessera::cli {
 namespace {
 
-struct Options {
+struct ConvertOptions {
   ModelOptions models;
   std::string output, format;
 };
@@ -36,7 +36,7 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
   return print_report(job.output, object.text() + "\n");
 }
 
-Status run_convert(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+Status run_convert(const Job& job, const ConvertOptions& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
   const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
@@ -59,7 +59,7 @@ std::string fault_of_output(const std::string& path) {
   return is_folder(path) || is_stream(path) ? "" : check_model_format(path).message();
 }
 
-constexpr const char* footer =
+constexpr const char* convert_footer =
     ".obj and .json keep weights, names, trims and the ranges of parameters. .bpt holds only polynomial patches. A\n"
     "warning names each part of a model that the file does not hold. Several models become one file, or one file each "
     "if\n"
@@ -71,7 +71,7 @@ constexpr const char* footer =
 
 void add_convert(Command& tool, Session& session) {
   Command& command = tool.add_command("convert", "Write surfaces as Bezier patches in another format");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConvertOptions>();
   add_models(command, options->models);
   command
       .add_text("-o,--output", "FILE",
@@ -83,7 +83,7 @@ void add_convert(Command& tool, Session& session) {
   add_reading(command, options->models);
   add_batch(command, session.common.batch);
   add_common(command, session.common);
-  command.footer = footer;
+  command.footer = convert_footer;
   command.choose = [options, &session] {
     const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
     check_input(options->models);

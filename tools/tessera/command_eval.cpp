@@ -21,7 +21,7 @@
 namespace tessera::cli {
 namespace {
 
-struct Options {
+struct EvalOptions {
   ModelOptions models;
   std::string output, places, format = "csv";
   std::optional<Extent> grid;
@@ -230,12 +230,12 @@ Status write_rows(const Loaded& loaded, const Places& places, const PartRun& run
   return {};
 }
 
-bool writes_json(const Job& job, const Options& options, const CommonOptions& common) {
+bool writes_json(const Job& job, const EvalOptions& options, const CommonOptions& common) {
   return options.format == "json" || (common.json && job.output.empty());
 }
 
 /// Writes the rows of all places, which a team shares, a million at a time.
-Status write_rows_of_team(const Loaded& loaded, const Places& places, const Options& options, bool json,
+Status write_rows_of_team(const Loaded& loaded, const Places& places, const EvalOptions& options, bool json,
                           OutputFile& out) {
   constexpr std::size_t places_at_once = std::size_t{1} << 20;
   Evaluator evaluator(loaded.model, options.models.fit);
@@ -253,7 +253,7 @@ Status write_rows_of_team(const Loaded& loaded, const Places& places, const Opti
   return {};
 }
 
-Status write_all_rows(const Loaded& loaded, const Places& places, const Options& options, bool json, OutputFile& out) {
+Status write_all_rows(const Loaded& loaded, const Places& places, const EvalOptions& options, bool json, OutputFile& out) {
   if (options.team) return write_rows_of_team(loaded, places, options, json, out);
   Evaluator evaluator(loaded.model, options.models.fit);
   Progress progress("evaluating");
@@ -261,7 +261,7 @@ Status write_all_rows(const Loaded& loaded, const Places& places, const Options&
   return write_rows(loaded, places, {0, places.count}, evaluator, rows, out, progress);
 }
 
-Result<Places> places_of(const Options& options, const Model& model) {
+Result<Places> places_of(const EvalOptions& options, const Model& model) {
   if (options.grid) return grid_places(*options.grid, model);
   Result<std::vector<SurfacePlace>> read = read_places(options.places, model);
   if (!read) return read.status();
@@ -281,7 +281,7 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
   return print_json(object);
 }
 
-Status eval_job(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+Status eval_job(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output, options.team);
   if (!out) return out.status();
   const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
@@ -304,12 +304,12 @@ Status eval_job(const Job& job, const Options& options, const CommonOptions& com
   return status.ok() ? loaded->status() : status;
 }
 
-Status run_eval(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+Status run_eval(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
   const Status own = eval_job(job, options, common, timings);
   return options.team ? options.team->end_job(own) : own;
 }
 
-constexpr const char* footer =
+constexpr const char* eval_footer =
     "--params takes a table with the header line surface,u,v. Surfaces are counted from 0. u and v lie in the "
     "surface's\n"
     "own domain ([0,1] for a Bezier patch; canonical parameters for a quadric). # begins a comment.\n"
@@ -327,7 +327,7 @@ constexpr const char* footer =
     "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
 
 /// Adds --grid and --params.
-void add_places(Command& command, Options& options) {
+void add_places(Command& command, EvalOptions& options) {
   command.begin_group("Places (one of)");
   Option& grid =
       command.add("--grid", "NxM", "N x M points on every surface, from border to border, 2 to 65536 each",
@@ -341,7 +341,7 @@ void add_places(Command& command, Options& options) {
 
 void add_eval(Command& tool, Session& session) {
   Command& command = tool.add_command("eval", "Evaluate surfaces: positions, derivatives, normals");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<EvalOptions>();
   options->team = session.team;
   add_models(command, options->models);
   command
@@ -356,7 +356,7 @@ void add_eval(Command& tool, Session& session) {
                      [options](const std::string& name) { options->format = name; });
   add_reading(command, options->models);
   add_common(command, session.common);
-  command.footer = footer;
+  command.footer = eval_footer;
   command.choose = [options, &session] {
     check_input(options->models);
     if (options->team) check_input_of_team(options->models);

@@ -17,7 +17,7 @@
 namespace tessera::cli {
 namespace {
 
-struct Options {
+struct InfoOptions {
   ModelOptions models;
   std::size_t max_joins = 20000;
 };
@@ -134,7 +134,7 @@ std::string as_text(const Findings& found) {
   return std::move(text).str();
 }
 
-Status run_info(const Job& job, const Options& options, const CommonOptions& common, Timings& timings) {
+Status run_info(const Job& job, const InfoOptions& options, const CommonOptions& common, Timings& timings) {
   const Result<Loaded> loaded = load(job, options.models, With::patches, timings);
   if (!loaded) return loaded.status();
   ModelOptions whole = options.models;
@@ -172,7 +172,7 @@ Status run_info(const Job& job, const Options& options, const CommonOptions& com
   return print_json(object);
 }
 
-constexpr const char* footer =
+constexpr const char* info_footer =
     "Joins: two patches have a border at the same place. They meet as C1 (one derivative across the border), as G1 "
     "(one\n"
     "normal, to 0.11 degrees), as C0 (one border, to 1e-6 of the two patches' size; the largest angle between the\n"
@@ -197,14 +197,14 @@ constexpr const char* footer =
 
 void add_info(Command& tool, Session& session) {
   Command& command = tool.add_command("info", "Describe models: surfaces, joins, sizes, memory");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   add_models(command, options->models);
   command.add_count("--joins", "COUNT", "Measure at most this many joins; 0 leaves them out [20000]", 0, 1'000'000'000,
                     [options](std::size_t count) { options->max_joins = count; });
   add_reading(command, options->models);
   add_batch(command, session.common.batch);
   add_common(command, session.common);
-  command.footer = footer;
+  command.footer = info_footer;
   command.choose = [options, &session] {
     const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
     check_input(options->models);

@@ -51,7 +51,7 @@ std::string command_case(const Command& command) {
   return text;
 }
 
-constexpr const char* begin = R"(# bash completion for tessera, written by `tessera completion bash`
+constexpr const char* bash_begin = R"(# bash completion for tessera, written by `tessera completion bash`
 
 _tessera() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
@@ -90,7 +90,7 @@ complete -F _tessera tessera
 }  // namespace
 
 std::string bash_completion(const Command& tool) {
-  std::string text = begin;
+  std::string text = bash_begin;
   text += "    '')\n      options=" + shell_quoted(named_options(tool)) +
           "\n      words=" + shell_quoted(command_names(tool)) + " ;;\n";
   for (const Command& command : tool.commands) text += command_case(command);

@@ -33,7 +33,7 @@ std::string all_specs(const Command& command) {
   return specs;
 }
 
-constexpr const char* begin = R"(#compdef tessera
+constexpr const char* zsh_begin = R"(#compdef tessera
 # zsh completion for tessera, written by `tessera completion zsh`
 
 _tessera() {
@@ -45,7 +45,7 @@ _tessera() {
 }  // namespace
 
 std::string zsh_completion(const Command& tool) {
-  std::string text = begin;
+  std::string text = zsh_begin;
   text += "  commands=(\n";
   for (const Command& command : tool.commands)
     text += "    " + shell_quoted(command.name + ":" + escaped(command.text, ":\\")) + "\n";

@@ -26,7 +26,7 @@ std::string entry(const std::string& name, const std::string& text) {
   return out + "\n";
 }
 
-std::string spelled(const Option& option) {
+std::string spelled_out(const Option& option) {
   std::string names;
   for (const std::string& name : option.names) names += (names.empty() ? "" : ", ") + name;
   if (option.is_positional()) return names + (option.repeated ? " ..." : "");
@@ -37,7 +37,7 @@ std::string usage(const Command& tool, const Command& command) {
   if (&tool == &command) return tool.name + " COMMAND [options]";
   std::string text = tool.name + " " + command.name;
   for (const Option& option : command.options) {
-    if (option.is_positional()) text += " " + spelled(option);
+    if (option.is_positional()) text += " " + spelled_out(option);
     if (option.required && !option.is_positional()) text += " " + option.names[0] + " " + option.value;
   }
   return text + " [options]";
@@ -54,7 +54,7 @@ std::string help_text(const Command& tool, const Command& command) {
     if (option.heading != heading) text += "\n" + option.heading + ":\n";
     heading = option.heading;
     text +=
-        entry(spelled(option), option.full_text() + (option.required && !option.is_positional() ? " (required)" : ""));
+        entry(spelled_out(option), option.full_text() + (option.required && !option.is_positional() ? " (required)" : ""));
   }
   return text + "\n" + command.footer + "\n";
 }
