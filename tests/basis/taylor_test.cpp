@@ -9,22 +9,22 @@
 namespace tessera::test {
 namespace {
 
-using Series = Taylor<double, 5>;
+using TaylorSeries = Taylor<double, 5>;
 using RealSeries = Taylor<long double, 5>;
 
 /// A series with all coefficients, with a value in [from, to).
-Series random_series(Random& random, double from, double to) {
-  const Series u = Series::variable(0, 0), v = Series::variable(0, 1);
-  Series sum = uniform(random, from, to), power_u = 1;
+TaylorSeries random_series(Random& random, double from, double to) {
+  const TaylorSeries u = TaylorSeries::variable(0, 0), v = TaylorSeries::variable(0, 1);
+  TaylorSeries sum = uniform(random, from, to), power_u = 1;
   for (int i = 0; i <= 5; ++i, power_u *= u) {
-    Series power = power_u;
+    TaylorSeries power = power_u;
     for (int j = 0; i + j <= 5; ++j, power *= v)
       if (i + j > 0) sum += uniform(random, -1, 1) * power;
   }
   return sum;
 }
 
-void expect_same(const Series& a, const Series& b, double tolerance, const char* what) {
+void expect_same(const TaylorSeries& a, const TaylorSeries& b, double tolerance, const char* what) {
   for (int i = 0; i <= 5; ++i)
     for (int j = 0; i + j <= 5; ++j)
       EXPECT_NEAR(a.coefficient(i, j), b.coefficient(i, j), tolerance) << what << " " << i << " " << j;
@@ -32,7 +32,7 @@ void expect_same(const Series& a, const Series& b, double tolerance, const char*
 
 TEST(Taylor, DerivativesOfAnExponential) {
   const double u = 0.3, v = -0.7;
-  const Series e = exp(2 * Series::variable(u, 0) - 3 * Series::variable(v, 1));
+  const TaylorSeries e = exp(2 * TaylorSeries::variable(u, 0) - 3 * TaylorSeries::variable(v, 1));
   const double value = std::exp(2 * u - 3 * v);
   for (int i = 0; i <= 5; ++i)
     for (int j = 0; i + j <= 5; ++j)
@@ -40,15 +40,15 @@ TEST(Taylor, DerivativesOfAnExponential) {
 }
 
 TEST(Taylor, DerivativesOfAMonomialAndAWave) {
-  const Series u = Series::variable(2, 0), v = Series::variable(-1, 1);
-  const Series p = 3 * u * u * v * v * v;
+  const TaylorSeries u = TaylorSeries::variable(2, 0), v = TaylorSeries::variable(-1, 1);
+  const TaylorSeries p = 3 * u * u * v * v * v;
   EXPECT_EQ(p.value(), -12);
   EXPECT_EQ(p.derivative(2, 0), -6);
   EXPECT_EQ(p.derivative(1, 1), 36);
   EXPECT_EQ(p.derivative(0, 2), -72);
   EXPECT_EQ(p.derivative(2, 3), 36);
   EXPECT_EQ(p.derivative(3, 0), 0);
-  const Series w = sin(u * v);  // d^2/du^2 = -v^2 sin, d^2/du dv = cos - uv sin
+  const TaylorSeries w = sin(u * v);  // d^2/du^2 = -v^2 sin, d^2/du dv = cos - uv sin
   EXPECT_NEAR(w.derivative(2, 0), -std::sin(-2.0), 1e-15);
   EXPECT_NEAR(w.derivative(1, 1), std::cos(-2.0) + 2 * std::sin(-2.0), 1e-15);
   EXPECT_NEAR(w.derivative(0, 3), -8 * std::cos(-2.0), 1e-14);
@@ -57,7 +57,7 @@ TEST(Taylor, DerivativesOfAMonomialAndAWave) {
 TEST(Taylor, FunctionsKeepTheirIdentities) {
   Random random(3);
   for (int k = 0; k < 20; ++k) {
-    const Series x = random_series(random, -1.2, 1.2), y = random_series(random, 0.6, 2);
+    const TaylorSeries x = random_series(random, -1.2, 1.2), y = random_series(random, 0.6, 2);
     expect_same(y / y, 1, 1e-11, "y / y");
     expect_same(sqrt(y) * sqrt(y), y, 1e-11, "sqrt");
     expect_same(exp(log(y)), y, 1e-11, "exp log");
@@ -91,7 +91,7 @@ TEST(Taylor, DerivativesAreThoseOfDifferences) {
   Random random(4);
   for (int k = 0; k < 50; ++k) {
     const double u = uniform(random, -1, 1), v = uniform(random, -1, 1);
-    const Series s = f(Series::variable(u, 0), Series::variable(v, 1));
+    const TaylorSeries s = f(TaylorSeries::variable(u, 0), TaylorSeries::variable(v, 1));
     const auto value = [&](long double a, long double b) { return f(u + a, v + b); };
     const auto du = [&](long double b) { return first([&](long double a) { return value(a, b); }); };
     EXPECT_NEAR(s.value(), double(value(0, 0)), 1e-15);
@@ -102,14 +102,14 @@ TEST(Taylor, DerivativesAreThoseOfDifferences) {
 }
 
 TEST(Taylor, ValuesStayWhereDerivativesAreInfinite) {
-  const auto root = sqrt(Series::variable(0, 0));
+  const auto root = sqrt(TaylorSeries::variable(0, 0));
   EXPECT_EQ(root.value(), 0);
   EXPECT_FALSE(std::isfinite(root.derivative(1, 0)));
-  EXPECT_EQ(sqrt(Series(0)).derivative(1, 0), 0);  // a constant has derivatives everywhere
-  const auto power = pow(Series::variable(0, 0), 1.5);
+  EXPECT_EQ(sqrt(TaylorSeries(0)).derivative(1, 0), 0);  // a constant has derivatives everywhere
+  const auto power = pow(TaylorSeries::variable(0, 0), 1.5);
   EXPECT_EQ(power.derivative(1, 0), 0);
   EXPECT_FALSE(std::isfinite(power.derivative(2, 0)));
-  const auto corner = abs(Series::variable(0, 1));
+  const auto corner = abs(TaylorSeries::variable(0, 1));
   EXPECT_EQ(corner.value(), 0);
   EXPECT_TRUE(std::isnan(corner.derivative(0, 1)));
 }

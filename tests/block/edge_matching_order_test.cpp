@@ -132,7 +132,7 @@ TEST(EdgeMatchingOrder, DividedEdgesKeepTheirCurves) {
     for (const bool with_table : {false, true}) {
       Shape shape;
       for (const ModelSurface& face : faces) shape.faces.push_back({face});
-      const Curve side = line({1, 0, 0}, {1, 1, 0});
+      const Curve side = space_line({1, 0, 0}, {1, 1, 0});
       // The face's curve is as long as 2; edges run from 1 to 3.
       const Curve in_face = value_of(Curve::bezier(std::vector<Vec3>{{1, 0, 0}, {1, 1, 0}}, {}, {1, 3}));
       shape.vertices = {{{1, 0, 0}, 1e-5}, {{1, 1, 0}, 2e-5}};
@@ -150,7 +150,7 @@ TEST(EdgeMatchingOrder, DividedEdgesKeepTheirCurves) {
       TrimLoop loop{{in_face}, false, {coedge}};
       for (const auto& [from, to] : {std::pair(Vec3{1, 1, 0}, Vec3{0, 1, 0}), std::pair(Vec3{0, 1, 0}, Vec3{0, 0, 0}),
                                      std::pair(Vec3{0, 0, 0}, Vec3{1, 0, 0})}) {
-        loop.curves.push_back(line(from, to));
+        loop.curves.push_back(space_line(from, to));
         loop.coedges.push_back({static_cast<std::uint32_t>(shape.edges.size())});
         shape.edges.push_back({});
       }
@@ -177,12 +177,12 @@ TEST(EdgeMatchingOrder, StatedCurvesAreMatchedFirst) {
                                     : quad({1 + gap, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1 + gap, 1, 0})});
     const double u = gap == 0 ? 1 : 0;
     const auto id = static_cast<std::uint32_t>(shape.edges.size());
-    TrimLoop loop{{line({u, 0, 0}, {u, 1, 0}), line({u, 1, 0}, {1 - u, 1, 0}), line({1 - u, 1, 0}, {1 - u, 0, 0}),
-                   line({1 - u, 0, 0}, {u, 0, 0})},
+    TrimLoop loop{{space_line({u, 0, 0}, {u, 1, 0}), space_line({u, 1, 0}, {1 - u, 1, 0}),
+                   space_line({1 - u, 1, 0}, {1 - u, 0, 0}), space_line({1 - u, 0, 0}, {u, 0, 0})},
                   false,
                   {{id}, {id + 1}, {id + 2}, {id + 3}}};
     shape.edges.resize(id + 4);
-    shape.edges[id].curve = line({1, 0, 0}, {1, 1, 0});
+    shape.edges[id].curve = space_line({1, 0, 0}, {1, 1, 0});
     shape.faces.back().outline = std::vector<TrimLoop>{loop};
   }
   const Shape made = value_of(joined_edges(shape, 1e-3));
@@ -206,7 +206,7 @@ TEST(EdgeMatchingOrder, LoopsOfOneCurveAreDividedAtCorners) {
       inside{{0.375, 0.25, 0}, {0.25, 0.25, 0}, {0.25, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.25, 0}};
   TrimLoop rim = closed(inside);
   rim.hole = true;
-  hole.trims = std::vector<TrimLoop>{polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), rim};
+  hole.trims = std::vector<TrimLoop>{space_polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), rim};
   floor.trims = std::vector<TrimLoop>{closed(around)};
   const Shape shape = joined({floor, hole}, 1e-3);
   EXPECT_EQ(counts_of(shape), (Counts{{1, 4}, {2, 5}}));

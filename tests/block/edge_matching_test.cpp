@@ -98,7 +98,7 @@ TEST(EdgeMatching, PacesOfCurvesArePaired) {
       EXPECT_LT(largest_gap(shape), 1e-14) << k;
     }
   // A polynomial change has no fraction that equals it.
-  const Curve even = line({0, 0, 0}, {1, 0, 0});
+  const Curve even = space_line({0, 0, 0}, {1, 0, 0});
   const Curve slow = value_of(Curve::bezier(std::vector<Vec3>{{1, 0, 0}, {0.7, 0, 0}, {0, 0, 0}}, {}, {2, 3}));
   const Shape shape = beside(even, slow, 1e-3);
   EXPECT_EQ(counts_of(shape), (Counts{{1, 6}, {2, 1}}));
@@ -169,8 +169,8 @@ TEST(EdgeMatching, NarrowSlitsAreClosed) {
   ModelSurface face = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   const auto with_slit = [&](double width) {
     face.trims = std::vector<TrimLoop>{
-        polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
-        polygon({{0.2, 0.5, 0}, {0.8, 0.5, 0}, {0.8, 0.5 + width, 0}, {0.2, 0.5 + width, 0}}, true)};
+        space_polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
+        space_polygon({{0.2, 0.5, 0}, {0.8, 0.5, 0}, {0.8, 0.5 + width, 0}, {0.2, 0.5 + width, 0}}, true)};
     return joined({face}, 1e-3);
   };
   EXPECT_EQ(counts_of(with_slit(1e-2)), (Counts{{1, 8}}));

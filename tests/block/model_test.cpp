@@ -19,7 +19,7 @@
 namespace tessera::test {
 namespace {
 
-Curve line(const Vec3& from, const Vec3& to, const Interval& interval = {}) {
+Curve line_over(const Vec3& from, const Vec3& to, const Interval& interval = {}) {
   return value_of(Curve::bezier(std::vector{from, to}, {}, interval));
 }
 
@@ -52,9 +52,9 @@ std::vector<Surface> exact_surfaces() {
           random_surface(random, 3, 2, {}, {.multiple = true}, true),
           random_hermite(random, {1, 3, -1, 0}),
           value_of(HermiteNetwork::on_knots(u, v, random_nodes(random, 3, 4))),
-          value_of(RuledSurface::make(wave, line({0, 0, 0}, {1, 0, 0}, wave.domain()))),
-          value_of(CoonsPatch::make({line({0, 0, 0}, {1, 0, 0}), line({0, 1, 0}, {1, 1, 2}), line({0, 0, 0}, {0, 1, 0}),
-                                     line({1, 0, 0}, {1, 1, 2})})),
+          value_of(RuledSurface::make(wave, line_over({0, 0, 0}, {1, 0, 0}, wave.domain()))),
+          value_of(CoonsPatch::make({line_over({0, 0, 0}, {1, 0, 0}), line_over({0, 1, 0}, {1, 1, 2}),
+                                     line_over({0, 0, 0}, {0, 1, 0}), line_over({1, 0, 0}, {1, 1, 2})})),
           value_of(ExplicitPolynomial::make(2, 1, std::vector<double>{1, 2, 3, 4, 5, 6}, {-1, 2, 0, 2})),
           half_cylinder()};
 }
@@ -203,9 +203,9 @@ TEST(Model, ExtentsAreTheBoxesOfThePatches) {
   for (const Affine& placement : {Affine{}, Affine::translated({3, 0, 1})})
     for (const Surface& surface : exact_surfaces()) model.surfaces.push_back({"", surface, placement});
   model.surfaces.push_back(model.surfaces[0]);  // cut, but every point of its net counts
-  model.surfaces.back().trims =
-      std::vector<TrimLoop>{{.curves = {line({0.2, 0.2, 0}, {0.6, 0.2, 0}), line({0.6, 0.2, 0}, {0.6, 0.6, 0}),
-                                        line({0.6, 0.6, 0}, {0.2, 0.2, 0})}}};
+  model.surfaces.back().trims = std::vector<TrimLoop>{
+      {.curves = {line_over({0.2, 0.2, 0}, {0.6, 0.2, 0}), line_over({0.6, 0.2, 0}, {0.6, 0.6, 0}),
+                  line_over({0.6, 0.6, 0}, {0.2, 0.2, 0})}}};
   const SurfaceExtents extents = value_of(surface_extents(model));
   ASSERT_EQ(extents.boxes.size(), model.surfaces.size());
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {

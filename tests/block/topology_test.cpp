@@ -7,16 +7,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "block/unjoined_faces.h"
 #include "support/errors.h"
 #include "support/synthetic_sets.h"
 #include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {
-
-Curve line(const Vec3& from, const Vec3& to) {
-  return value_of(Curve::b_spline(1, std::vector<Vec3>{from, to}, std::vector<double>{0, 0, 1, 1}));
-}
 
 constexpr std::array<std::array<std::uint32_t, 4>, 6> cube_faces{
     {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
@@ -34,7 +31,7 @@ Shape cube() {
       if (shape.edges[k].start == from && shape.edges[k].end == to) return {k, false};
       if (shape.edges[k].start == to && shape.edges[k].end == from) return {k, true};
     }
-    shape.edges.push_back({from, to, {0, 1}, line(corner(from), corner(to)), 1e-7});
+    shape.edges.push_back({from, to, {0, 1}, space_line(corner(from), corner(to)), 1e-7});
     return {static_cast<std::uint32_t>(shape.edges.size() - 1), false};
   };
   for (const auto& at : cube_faces) {
@@ -42,7 +39,7 @@ Shape cube() {
     TrimLoop loop;
     const std::array<Vec3, 4> uv{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
     for (std::size_t k = 0; k < 4; ++k) {
-      loop.curves.push_back(line(uv[k], uv[(k + 1) % 4]));
+      loop.curves.push_back(space_line(uv[k], uv[(k + 1) % 4]));
       loop.coedges.push_back(edge(at[k], at[(k + 1) % 4]));
     }
     ShapeFace face{{"side", value_of(BezierPatch::polynomial(1, 1, points))}};
@@ -184,7 +181,7 @@ TEST(Topology, LoopsBeyondTheDomainOfAClosedSurfaceAreMeasuredWithinIt) {
   const double width = d.u1 - d.u0;
   const auto across = [&](double shift) {
     return TrimLoop{
-        {line({d.u_at(0.75) + shift, d.v_at(0.5), 0}, {d.u_at(1.25) + shift, d.v_at(0.5), 0})}, false, {{0}}};
+        {space_line({d.u_at(0.75) + shift, d.v_at(0.5), 0}, {d.u_at(1.25) + shift, d.v_at(0.5), 0})}, false, {{0}}};
   };
   Shape shape;
   shape.edges.resize(1);
@@ -260,7 +257,7 @@ TEST(Topology, IdsOfNothingAreRefused) {
   Shape stated = cube();
   std::vector<TrimLoop> loops = stated.faces[2].trims;
   for (Coedge& coedge : loops[0].coedges)
-    coedge.parameter = line({coedge.reversed ? 1.0 : 0.0, 0, 0}, {coedge.reversed ? 0.0 : 1.0, 0, 0});
+    coedge.parameter = space_line({coedge.reversed ? 1.0 : 0.0, 0, 0}, {coedge.reversed ? 0.0 : 1.0, 0, 0});
   stated.faces[2].trims = loops;
   EXPECT_TRUE(check_topology(stated).ok()) << check_topology(stated).message();
   const Model model = two_cubes();

@@ -50,15 +50,15 @@ inline std::vector<ModelSurface> cube(double size = 1, const Vec3& at = {}) {
   return faces;
 }
 
-inline Curve line(const Vec3& from, const Vec3& to) {
+inline Curve space_line(const Vec3& from, const Vec3& to) {
   return value_of(Curve::b_spline(1, std::vector<Vec3>{from, to}, std::vector<double>{0, 0, 1, 1}));
 }
 
 /// A closed loop of straight lines.
-inline TrimLoop polygon(const std::vector<Vec3>& points, bool hole = false) {
+inline TrimLoop space_polygon(const std::vector<Vec3>& points, bool hole = false) {
   TrimLoop loop{{}, hole, {}};
   for (std::size_t k = 0; k < points.size(); ++k)
-    loop.curves.push_back(line(points[k], points[(k + 1) % points.size()]));
+    loop.curves.push_back(space_line(points[k], points[(k + 1) % points.size()]));
   return loop;
 }
 

@@ -15,7 +15,7 @@
 namespace tessera::test {
 namespace {
 
-const std::vector<KnotStyle> styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
+const std::vector<KnotStyle> extracted_styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
 
 void expect_same(const BSplineSurface& s, const PatchGrid& grid, Random& random, double limit) {
   const double unit = double_unit * largest_coefficient(s.points());
@@ -36,9 +36,9 @@ void expect_same(const BSplineSurface& s, const PatchGrid& grid, Random& random,
 TEST(BezierExtraction, ReproducesTheSurface) {
   Random random(1);
   for (const auto& [p, q] : {std::pair{1, 1}, {2, 3}, {3, 3}, {5, 4}, {8, 1}, {15, 15}})
-    for (std::size_t k = 0; k < styles.size(); ++k)
+    for (std::size_t k = 0; k < extracted_styles.size(); ++k)
       for (const bool rational : {false, true}) {
-        const BSplineSurface s = random_surface(random, p, q, styles[k], styles[(k + 3) % styles.size()], rational);
+        const BSplineSurface s = random_surface(random, p, q, extracted_styles[k], extracted_styles[(k + 3) % extracted_styles.size()], rational);
         expect_same(s, value_of(to_bezier(s)), random, 8);
       }
 }
@@ -233,7 +233,7 @@ TEST(BezierExtraction, AControlPointTouchesThePatchesItNames) {
 TEST(BezierExtraction, CurvesInPieces) {
   Random random(8);
   for (const int degree : {1, 2, 3, 7})
-    for (const KnotStyle& style : styles)
+    for (const KnotStyle& style : extracted_styles)
       for (const bool rational : {false, true}) {
         const Curve curve = random_curve(random, degree, style, rational);
         const BezierPieces pieces = value_of(to_bezier(curve));

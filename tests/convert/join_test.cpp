@@ -11,7 +11,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr Edge edges[] = {Edge::u0, Edge::u1, Edge::v0, Edge::v1};
 
 JoinReport measured(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances = {}) {
@@ -233,12 +233,12 @@ TEST(Join, RefusesBadInput) {
   };
   EXPECT_EQ(code({p, static_cast<Edge>(3)}, {p, Edge::u0}), StatusCode::invalid_argument);
   EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0, {1, 1, 0, 1}}), StatusCode::invalid_argument);
-  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0, {0, nan, 0, 1}}), StatusCode::non_finite);
-  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0}, {.angle = nan}), StatusCode::invalid_argument);
+  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0, {0, no_number, 0, 1}}), StatusCode::non_finite);
+  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0}, {.angle = no_number}), StatusCode::invalid_argument);
   EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0}, {.position = -1}), StatusCode::invalid_argument);
   for (const double k : {0.0, -1.0})
     EXPECT_EQ(make_join({p, Edge::u1}, {p, Edge::u0}, k).status().code(), StatusCode::invalid_argument);
-  for (const double k : {nan, std::numeric_limits<double>::infinity()})
+  for (const double k : {no_number, std::numeric_limits<double>::infinity()})
     EXPECT_EQ(make_join({p, Edge::u1}, {p, Edge::u0}, k).status().code(), StatusCode::non_finite);
   const BezierPatch heavy = rational(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}}, {4, 4, 1, 1});
   EXPECT_EQ(make_join({heavy, Edge::u1}, {p, Edge::u0}, 1).status().code(), StatusCode::invalid_weight);

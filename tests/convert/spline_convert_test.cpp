@@ -9,7 +9,7 @@
 namespace tessera::test {
 namespace {
 
-const std::vector<KnotStyle> styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
+const std::vector<KnotStyle> knot_styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
 
 void expect_same(const Curve& a, const Curve& b, Random& random) {
   EXPECT_EQ(a.domain(), b.domain());
@@ -32,7 +32,7 @@ template <class Body>
 void for_all_curves(int most, Body body) {
   Random random(1);
   for (int degree = 1; degree <= most; ++degree)
-    for (const KnotStyle& style : styles)
+    for (const KnotStyle& style : knot_styles)
       for (const bool rational : {false, true}) body(random, random_curve(random, degree, style, rational));
 }
 
@@ -127,9 +127,9 @@ TEST(SplineConvert, UnevenKnotsAreElevatedToo) {
 TEST(SplineConvert, SurfacesAreRefinedClampedAndElevated) {
   Random random(5);
   for (const auto& [p, q] : {std::pair{1, 3}, {3, 2}, {5, 5}})
-    for (std::size_t k = 0; k < styles.size(); ++k)
+    for (std::size_t k = 0; k < knot_styles.size(); ++k)
       for (const bool rational : {false, true}) {
-        const BSplineSurface s = random_surface(random, p, q, styles[k], styles[(k + 3) % styles.size()], rational);
+        const BSplineSurface s = random_surface(random, p, q, knot_styles[k], knot_styles[(k + 3) % knot_styles.size()], rational);
         const std::vector<double> u{s.domain().u_at(0.3)}, v{s.domain().v_at(0.45), s.domain().v_at(0.9)};
         const BSplineSurface more = value_of(insert_knots(s, u, v));
         EXPECT_EQ(more.count_u(), s.count_u() + 1);

@@ -17,15 +17,15 @@ namespace tessera::test {
 namespace {
 
 /// Largest errors over a set in the units of evaluate.h: so that their bounds are 2, 4, 16, 16 and 8.
-struct Errors {
+struct PositionErrors {
   double polynomial = 0, rational = 0;             // positions
   double derivative = 0, rational_derivative = 0;  // over the degree
   double normal = 0;  // times the sine of the tangents' angle and the shorter tangent, over the largest coefficient
   double plain = 0;   // of polynomial positions, the largest |coefficient| times the unit being 1
 
-  void grow(const Errors& other) {
-    for (double Errors::*const e : {&Errors::polynomial, &Errors::rational, &Errors::derivative,
-                                    &Errors::rational_derivative, &Errors::normal, &Errors::plain})
+  void grow(const PositionErrors& other) {
+    for (double PositionErrors::*const e : {&PositionErrors::polynomial, &PositionErrors::rational, &PositionErrors::derivative,
+                                    &PositionErrors::rational_derivative, &PositionErrors::normal, &PositionErrors::plain})
       this->*e = std::max(this->*e, other.*e);
   }
 };
@@ -55,14 +55,14 @@ double error_of(const Vec3& value, const Vec3& expected, double unit, double abs
 
 template <class T>
 void add_errors(const BezierPatch& patch, const GridBuffers<T>& out, std::size_t record, double u, double v,
-                const Vec3& shift, Representation representation, Errors& errors) {
+                const Vec3& shift, Representation representation, PositionErrors& errors) {
   const double epsilon = sizeof(T) == 4 ? float_unit : double_unit;
   const double degree = std::max(patch.degree_u(), patch.degree_v());
   const Units units(patch, u, v, epsilon, representation);
   if (units.denominator > 0.01) return;  // the denominator may be anything
   const RealJet jet = reference_jet(patch, u, v);
   const Vec3 position = vector_at(out.position, record);
-  Errors here;
+  PositionErrors here;
   (patch.is_rational() ? here.rational : here.polynomial) =
       error_of(position - shift, jet.position.rounded(), units.position, max_abs(shift) > 0 ? max_abs(position) : 0);
   if (!patch.is_rational()) here.plain = here.polynomial * units.position / (epsilon * largest_coefficient(patch));
@@ -80,12 +80,12 @@ void add_errors(const BezierPatch& patch, const GridBuffers<T>& out, std::size_t
 }
 
 template <class T>
-Errors errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u, const std::vector<double>& v,
+PositionErrors position_errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u, const std::vector<double>& v,
                  Representation representation = Representation::bernstein) {
   GridBuffers<T> out(plan);
   const Status status = evaluate(set, plan, out.views());
   EXPECT_TRUE(status.ok()) << status.message();
-  Errors errors;
+  PositionErrors errors;
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const BezierPatch patch = relative_to(set.patch(k), set.origin());
     for (std::size_t i = 0; i < u.size(); ++i)
@@ -114,11 +114,11 @@ void check_bounds(Isa isa, Representation representation) {
   std::printf("degree  positions  rational  derivatives  rational  normals%s\n",
               bernstein ? "" : "  positions as they are");
   for (int degree = 1; degree <= max_degree; ++degree) {
-    Errors errors;
+    PositionErrors errors;
     for (const Circumstance& where : circumstances) {
       const PatchSet set = set_of(patches_of_degree(random, degree, 8, where), options);
       const GridPlan plan = value_of(GridPlan::make(set, u, v, {precision_of<T>, representation, isa}));
-      errors.grow(errors_of<T>(set, plan, u, v, representation));
+      errors.grow(position_errors_of<T>(set, plan, u, v, representation));
     }
     std::printf("%6d  %9.2f  %8.2f  %11.2f  %8.2f  %7.2f", degree, errors.polynomial, errors.rational,
                 errors.derivative, errors.rational_derivative, errors.normal);
@@ -153,7 +153,7 @@ void check_steep(Isa isa, Representation representation) {
     SCOPED_TRACE("degree " + std::to_string(degree));
     const PatchSet set = set_of(steep_patches(random, degree), options);
     const GridPlan plan = value_of(GridPlan::make(set, u, v, {precision_of<T>, representation, isa}));
-    const Errors errors = errors_of<T>(set, plan, u, v, representation);
+    const PositionErrors errors = position_errors_of<T>(set, plan, u, v, representation);
     std::printf("%6d  %9.2f  %11.2f  %7.2f\n", degree, errors.rational, errors.rational_derivative, errors.normal);
     EXPECT_LE(errors.rational, 4 + degree / 4.0);
     EXPECT_LE(errors.rational_derivative, 16);
@@ -198,7 +198,7 @@ TEST_P(Accuracy, FarFromZero) {
   const PatchSet set = set_of(patches);
   const std::vector<double> t = uniform_parameters(5);
   const GridPlan plan = value_of(GridPlan::make(set, t, t, {.isa = GetParam()}));
-  EXPECT_LE(errors_of<float>(set, plan, t, t).polynomial, 2);
+  EXPECT_LE(position_errors_of<float>(set, plan, t, t).polynomial, 2);
 }
 
 /// Scales from 1e-12 to 1e12 give the same normals as scale 1, not zero and not NaN.

@@ -38,13 +38,13 @@ struct Sizes {
 };
 
 /// Largest errors over a set, each divided by the bound of evaluate.h.
-struct Errors {
+struct GeometryErrors {
   double second = 0, first_form = 0, second_form = 0, curvature = 0, gaussian = 0, direction = 0;
   int undefined = 0;
 
-  void grow(const Errors& other) {
-    for (double Errors::*const e : {&Errors::second, &Errors::first_form, &Errors::second_form, &Errors::curvature,
-                                    &Errors::gaussian, &Errors::direction})
+  void grow(const GeometryErrors& other) {
+    for (double GeometryErrors::*const e : {&GeometryErrors::second, &GeometryErrors::first_form, &GeometryErrors::second_form, &GeometryErrors::curvature,
+                                    &GeometryErrors::gaussian, &GeometryErrors::direction})
       this->*e = std::max(this->*e, other.*e);
     undefined += other.undefined;
   }
@@ -57,7 +57,7 @@ Vec3 scalars(const View1<T>& a, const View1<T>& b, const View1<T>& c, std::size_
 
 template <class T>
 void add_curvature_errors(const QuantityViews<T>& out, std::size_t record, const RealGeometry& g, const Sizes& sizes,
-                          double unit, Errors& errors) {
+                          double unit, GeometryErrors& errors) {
   const double k1 = static_cast<double>(g.first), k2 = static_cast<double>(g.second), bound = sizes.curvature();
   const auto grow = [](double& largest, double error) {
     largest = std::max(largest, std::isfinite(error) ? error : 1e300);
@@ -78,13 +78,13 @@ void add_curvature_errors(const QuantityViews<T>& out, std::size_t record, const
 }
 
 template <class T>
-Errors errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u,
+GeometryErrors geometry_errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u,
                  const std::vector<double>& v) {
   AllBuffers<T> memory(plan);
   const QuantityViews<T> out = memory.views();
   EXPECT_TRUE(evaluate(set, plan, out).ok());
   const double unit = sizeof(T) == 4 ? float_unit : double_unit;
-  Errors errors;
+  GeometryErrors errors;
   for (std::size_t record = 0; record < plan.capacity(); ++record) {
     const std::size_t k = record / (u.size() * v.size()), i = record / v.size() % u.size(), j = record % v.size();
     const BezierPatch patch = relative_to(set.patch(k), set.origin());
@@ -128,11 +128,11 @@ void check_bounds(Isa isa) {
   std::puts("degree  second derivatives  first form  second form  curvatures  Gaussian  directions");
   for (int degree = 1; degree <= max_degree; ++degree) {
     SCOPED_TRACE("degree " + std::to_string(degree));
-    Errors errors;
+    GeometryErrors errors;
     for (const Circumstance& where : circumstances) {
       const PatchSet set = set_of(patches_of_degree(random, degree, 8, where), options);
       const GridPlan plan = value_of(GridPlan::make(set, u, v, {.precision = precision_of<T>, .isa = isa}));
-      errors.grow(errors_of<T>(set, plan, u, v));
+      errors.grow(geometry_errors_of<T>(set, plan, u, v));
     }
     std::printf("%6d  %18.2f  %10.2f  %11.2f  %10.2f  %8.2f  %10.2f\n", degree, errors.second, errors.first_form,
                 errors.second_form, errors.curvature, errors.gaussian, errors.direction);
@@ -164,7 +164,7 @@ void check_steep(Isa isa) {
     SCOPED_TRACE("degree " + std::to_string(degree));
     const PatchSet set = set_of(steep_patches(random, degree), options);
     const GridPlan plan = value_of(GridPlan::make(set, u, v, {.precision = precision_of<T>, .isa = isa}));
-    const Errors errors = errors_of<T>(set, plan, u, v);
+    const GeometryErrors errors = geometry_errors_of<T>(set, plan, u, v);
     std::printf("%6d  %18.2f  %10.2f  %11.2f  %10.2f  %8.2f  %10.2f\n", degree, errors.second, errors.first_form,
                 errors.second_form, errors.curvature, errors.gaussian, errors.direction);
     EXPECT_LE(errors.second, 48);

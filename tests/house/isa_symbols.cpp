@@ -7,7 +7,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<IsaUnit, 4> units{{
+constexpr std::array<IsaUnit, 4> isa_units{{
     {"sse2", "sse2"},
     {"avx2", "avx|avx2|fma3|fma5"},
     {"avx512", "avx512[a-z]*"},
@@ -37,7 +37,7 @@ bool is_own(const IsaUnit& unit, const std::string& symbol) {
 }  // namespace
 
 std::optional<IsaUnit> isa_unit_of(std::string_view object_path) {
-  for (const IsaUnit& unit : units)
+  for (const IsaUnit& unit : isa_units)
     for (const char* const target : {".dir/", "_mesh.dir/"})
       if (object_path.find("/tessera_kernel_" + std::string(unit.isa) + target) != std::string_view::npos) return unit;
   return std::nullopt;

@@ -159,7 +159,7 @@ TEST_P(GltfAssembly, PartsOfAMeshHaveColoursToo) {
 }
 
 /// The places of all corners, in the order of the triangles.
-std::vector<Vec3> corners(const Mesh& mesh) {
+std::vector<Vec3> corners_of(const Mesh& mesh) {
   std::vector<Vec3> places;
   for (const std::uint32_t index : mesh.indices)
     places.push_back(mesh.origin +
@@ -191,7 +191,7 @@ TEST_P(GltfAssembly, EveryCornerIsReadBackWhereItStands) {
     EXPECT_EQ(model.nodes.at(5).name, "point");
     EXPECT_EQ(model.nodes.at(5).mesh, -1);
     const Mesh back = value_of(read_mesh(path()));
-    const std::vector<Vec3> found = corners(back), expected = corners(value_of(flatten(assembly)));
+    const std::vector<Vec3> found = corners_of(back), expected = corners_of(value_of(flatten(assembly)));
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t k = 0; k < found.size(); ++k)
       EXPECT_LE(length(found[k] - metre * expected[k]), 2e-4 * metre) << unit << ", corner " << k;

@@ -32,13 +32,13 @@ std::vector<std::string> examples() {
 
 /// A whole model, or one surface of one.
 std::string as_model(const std::string& example) {
-  return example.find("\"format\"") != std::string::npos ? example : model_of(example);
+  return example.find("\"format\"") != std::string::npos ? example : json_with(example);
 }
 
 /// The words between `begin` and `end` in an error message, split at commas.
 std::vector<std::string> listed_in_refusal(const std::string& surface, const std::string& begin,
                                            const std::string& end) {
-  const std::string message = parse_json_model(model_of(surface), "m.json").status().message();
+  const std::string message = parse_json_model(json_with(surface), "m.json").status().message();
   const std::size_t from = message.find(begin) + begin.size();
   std::istringstream list(message.substr(from, end.empty() ? std::string::npos : message.find(end) - from));
   std::vector<std::string> words;

@@ -349,7 +349,7 @@ TEST(JsonModel, ParametricSurfaces) {
 TEST(JsonModel, PlacementsApplyInOrder) {
   const std::string patch = R"("points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]])";
   const auto placement = [&](const std::string& maps) {
-    return *parsed(model_of(surface_of("bezier", patch + ", \"placement\": " + maps))).surfaces[0].placement;
+    return *parsed(json_with(surface_of("bezier", patch + ", \"placement\": " + maps))).surfaces[0].placement;
   };
   EXPECT_EQ(placement("[]"), Affine{});
   const Vec3 p{1, 2, 3};

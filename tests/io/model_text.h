@@ -52,7 +52,7 @@ inline std::string json(const Curve& curve) {
 }
 
 /// A model of one surface, on the second line.
-inline std::string model_of(const std::string& surface) {
+inline std::string json_with(const std::string& surface) {
   return "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": [\n" + surface + "\n]}\n";
 }
 /// A surface of this kind with these fields.
@@ -64,7 +64,7 @@ inline Model parsed(const std::string& text) { return value_of(parse_json_model(
 /// The one surface of a kind with these fields.
 template <class T>
 T read_as(const std::string& kind, const std::string& fields) {
-  return std::get<T>(parsed(model_of(surface_of(kind, fields))).surfaces.at(0).surface);
+  return std::get<T>(parsed(json_with(surface_of(kind, fields))).surfaces.at(0).surface);
 }
 
 }  // namespace tessera::test

@@ -32,14 +32,14 @@ Mesh parsed(const std::string& bytes) {
   return mesh ? *mesh : Mesh{};
 }
 
-std::string error_of(const std::string& bytes) {
+std::string stl_error_of(const std::string& bytes) {
   const Result<Mesh> mesh = parse_stl(bytes, "m.stl");
   EXPECT_FALSE(mesh.ok()) << bytes;
   return mesh.ok() ? "" : mesh.status().message();
 }
 
 /// The coordinates of all corners, one after the other.
-std::vector<float> corners(const Mesh& mesh) {
+std::vector<float> stl_corners(const Mesh& mesh) {
   std::vector<float> values;
   for (const std::uint32_t index : mesh.indices)
     values.insert(values.end(), &mesh.positions[3 * index], &mesh.positions[3 * index] + 3);
@@ -63,7 +63,7 @@ TEST(Stl, TheFileIsWhatTheFormatSays) {
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, 4);
   EXPECT_EQ(count, 80u);
-  const std::vector<float> expected = corners(mesh);
+  const std::vector<float> expected = stl_corners(mesh);
   for (std::size_t k = 0; k < 80; ++k) {
     const std::array<float, 12> values = facet(bytes, k);
     EXPECT_TRUE(std::equal(values.begin() + 3, values.end(), expected.begin() + static_cast<std::ptrdiff_t>(9 * k)));
@@ -92,7 +92,7 @@ TEST(Stl, EveryCornerComesBackAndEqualOnesAreOneVertex) {
   for (const std::size_t vertices : {3u, 50u, 60000u}) {
     const Mesh mesh = random_mesh(vertices, 2 * vertices, {false, false, false});
     const Mesh read = parsed(written(mesh));
-    EXPECT_EQ(corners(read), corners(mesh));
+    EXPECT_EQ(stl_corners(read), stl_corners(mesh));
     EXPECT_LE(read.vertex_count(), vertices);  // vertices without a triangle do not come back
     EXPECT_GE(read.vertex_count(), vertices * 8 / 10);
   }
@@ -123,7 +123,7 @@ TEST(Stl, TheOriginIsAddedInDouble) {
 TEST(Stl, TheFileIsTheSameAtEverySize) {  // of pieces, and of the buffer
   const Mesh mesh = random_mesh(1000, 200000, {false, false, false});
   const std::string bytes = written(mesh);
-  const std::vector<float> expected = corners(mesh);
+  const std::vector<float> expected = stl_corners(mesh);
   for (std::size_t k = 0; k < 200000; ++k)
     ASSERT_EQ(std::memcmp(bytes.data() + 84 + 50 * k + 12, expected.data() + 9 * k, 36), 0) << k;
 }
@@ -155,20 +155,21 @@ TEST(Stl, TruncatedAtEveryByte) {
 }
 
 TEST(Stl, ErrorsNameThePlace) {
-  EXPECT_EQ(error_of("solid s\nendsolid s\n"), "m.stl:2: there are no triangles");
-  EXPECT_EQ(error_of("x"),
+  EXPECT_EQ(stl_error_of("solid s\nendsolid s\n"), "m.stl:2: there are no triangles");
+  EXPECT_EQ(stl_error_of("x"),
             "m.stl: the file does not begin with solid, and with 1 bytes it is too short for a binary STL file");
   std::string huge(84 + 50, 'x');
-  EXPECT_EQ(error_of(huge), "m.stl: the header states 2021161080 triangles; the file has room for 1 and 0 bytes more");
+  EXPECT_EQ(stl_error_of(huge),
+            "m.stl: the header states 2021161080 triangles; the file has room for 1 and 0 bytes more");
   huge.replace(80, 4, 4, '\0');
-  EXPECT_EQ(error_of(huge), "m.stl: the header states 0 triangles; the file has room for 1 and 0 bytes more");
-  EXPECT_EQ(error_of(huge.substr(0, 84)), "m.stl: there are no triangles");
-  EXPECT_EQ(error_of("solid s\nfacet normal 0 0\n"),
+  EXPECT_EQ(stl_error_of(huge), "m.stl: the header states 0 triangles; the file has room for 1 and 0 bytes more");
+  EXPECT_EQ(stl_error_of(huge.substr(0, 84)), "m.stl: there are no triangles");
+  EXPECT_EQ(stl_error_of("solid s\nfacet normal 0 0\n"),
             "m.stl:2: expected 3 numbers after normal, found the end of the line");
-  EXPECT_EQ(error_of("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
+  EXPECT_EQ(stl_error_of("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
             "m.stl:6: expected 3 lines of vertex, found \"endloop\"");
-  EXPECT_EQ(error_of("solid s\n" + one_facet), "m.stl:8: expected facet or endsolid, found the end of the file");
-  EXPECT_EQ(error_of("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0,5\n"),
+  EXPECT_EQ(stl_error_of("solid s\n" + one_facet), "m.stl:8: expected facet or endsolid, found the end of the file");
+  EXPECT_EQ(stl_error_of("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0,5\n"),
             "m.stl:4: expected 3 numbers after vertex, found \"0,5\"");
 }
 

@@ -17,7 +17,7 @@ namespace tessera::test {
 namespace {
 
 /// The number of the k-th entity of a kind: "#15" of "#15 = ADVANCED_FACE(".
-std::string number_of(const std::string& step, const std::string& kind, int k = 0) {
+std::string instances_number_of(const std::string& step, const std::string& kind, int k = 0) {
   std::size_t end = step.find(" = " + kind + "(");
   while (k-- > 0) end = step.find(" = " + kind + "(", end + 1);
   EXPECT_NE(end, std::string::npos) << kind;
@@ -66,11 +66,11 @@ TEST(Instances, HaveColoursOfTheirOwn) {
   const ScratchFolder folder;
   std::string step = assembly_text(folder);
   ASSERT_NE(step.find("NEXT_ASSEMBLY_USAGE_OCCURRENCE"), std::string::npos);
-  const std::string use = number_of(step, "NEXT_ASSEMBLY_USAGE_OCCURRENCE", 1);
+  const std::string use = instances_number_of(step, "NEXT_ASSEMBLY_USAGE_OCCURRENCE", 1);
   insert(step, "#90010=PRODUCT_DEFINITION_SHAPE('',''," + use +
                    ");\n#90011=SHAPE_DEFINITION_REPRESENTATION(#90010,#90012);\n"
                    "#90012=SHAPE_REPRESENTATION('',(),$);\n" +
-                   red_style(number_of(step, "MANIFOLD_SOLID_BREP"), "#90012"));
+                   red_style(instances_number_of(step, "MANIFOLD_SOLID_BREP"), "#90012"));
   const Model model = value_of(read_cad(folder.file("coloured.step", step)));
   EXPECT_TRUE(model.warnings.empty()) << model.warnings[0];
   ASSERT_EQ(model.instances.size(), 2u);
@@ -82,8 +82,8 @@ TEST(Instances, HaveColoursOfTheirOwn) {
 TEST(Instances, ColoursOfOtherContextsAreSaid) {
   const ScratchFolder folder;
   std::string step = box_text(folder);
-  insert(step,
-         red_style(number_of(step, "MANIFOLD_SOLID_BREP"), number_of(step, "ADVANCED_BREP_SHAPE_REPRESENTATION")));
+  insert(step, red_style(instances_number_of(step, "MANIFOLD_SOLID_BREP"),
+                         instances_number_of(step, "ADVANCED_BREP_SHAPE_REPRESENTATION")));
   const Model model = value_of(read_cad(folder.file("context.step", step)));
   EXPECT_EQ(red_faces(model.shapes.at(0)), 0u);
   ASSERT_EQ(model.warnings.size(), 1u);
@@ -111,10 +111,10 @@ TEST(Instances, AreNamedByTheirIdWhereTheNameIsEmpty) {
 /// The box as a mapped item: its representation is mapped from the origin to `target`, an operator #90003.
 std::string mapped_text(const ScratchFolder& folder, const std::string& target) {
   std::string step = box_text(folder);
-  const std::string whole = number_of(step, "ADVANCED_BREP_SHAPE_REPRESENTATION");
+  const std::string whole = instances_number_of(step, "ADVANCED_BREP_SHAPE_REPRESENTATION");
   const std::size_t begin = step.find(whole + " = ADVANCED"), context_end = step.find(");", begin);
   const std::string context = step.substr(step.rfind('#', context_end), context_end - step.rfind('#', context_end));
-  const std::string origin = number_of(step, "AXIS2_PLACEMENT_3D");
+  const std::string origin = instances_number_of(step, "AXIS2_PLACEMENT_3D");
   const std::size_t link = step.find(",", step.find("SHAPE_DEFINITION_REPRESENTATION(")) + 1;
   step.replace(link, step.find(')', link) - link, "#90006");
   insert(step, "#90001=REPRESENTATION_MAP(" + origin + "," + whole + ");\n#90002=MAPPED_ITEM('',#90001,#90003);\n" +

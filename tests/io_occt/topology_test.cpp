@@ -34,21 +34,21 @@
 namespace tessera::test {
 namespace {
 
-struct Counts {
+struct TopologyCounts {
   std::size_t faces = 0, solids = 0, shells = 0, closed = 0, edges = 0, vertices = 0, degenerate = 0;
   std::map<std::size_t, std::size_t> by_uses;  ///< number of coedges -> edges that are not degenerate
-  friend bool operator==(const Counts&, const Counts&) = default;
+  friend bool operator==(const TopologyCounts&, const TopologyCounts&) = default;
 };
 
-std::ostream& operator<<(std::ostream& out, const Counts& c) {
+std::ostream& operator<<(std::ostream& out, const TopologyCounts& c) {
   out << c.faces << " faces, " << c.solids << " solids, " << c.shells << " shells (" << c.closed << " closed), "
       << c.edges << " edges (" << c.degenerate << " degenerate), " << c.vertices << " vertices;";
   for (const auto& [uses, edges] : c.by_uses) out << ' ' << edges << " of " << uses;
   return out;
 }
 
-Counts counts_of(const Model& model) {
-  Counts all;
+TopologyCounts topology_counts_of(const Model& model) {
+  TopologyCounts all;
   for (const Instance& instance : model.instances) {
     const Shape& shape = model.shapes[instance.shape];
     const std::vector<bool> closed = value_of(closed_shells(shape));
@@ -74,8 +74,8 @@ std::size_t count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
 }
 
 /// By OpenCASCADE alone, of all that belongs to faces.
-Counts counts_of(const TopoDS_Shape& shape) {
-  Counts all;
+TopologyCounts topology_counts_of(const TopoDS_Shape& shape) {
+  TopologyCounts all;
   all.solids = count(shape, TopAbs_SOLID);
   TopTools_IndexedMapOfShape edges, vertices, shells;
   std::vector<std::size_t> uses;
@@ -134,7 +134,7 @@ double gap_of(const Model& model, int samples) {
   return largest;
 }
 
-double size_of(const Model& model) {
+double topology_size_of(const Model& model) {
   Box3 box;
   for (const ModelSurface& surface : model.surfaces)
     for (const Vec3& p : std::get<BSplineSurface>(surface.surface).points()) box.extend(surface.placement->point(p));
@@ -148,10 +148,10 @@ void compare(const std::string& path) {
   const Result<Model> model = read_cad(path);
   ASSERT_TRUE(model.ok()) << model.status().message();
   ASSERT_TRUE(check_topology(*model).ok());
-  const Counts ours = counts_of(*model), theirs = counts_of(file->shape);
+  const TopologyCounts ours = topology_counts_of(*model), theirs = topology_counts_of(file->shape);
   EXPECT_EQ(ours, theirs) << path;
   constexpr int samples = 257;
-  const double size = size_of(*model), gap = gap_of(*model, samples), their_gap = gap_of(file->shape, samples);
+  const double size = topology_size_of(*model), gap = gap_of(*model, samples), their_gap = gap_of(file->shape, samples);
   const double fit = 3e-8 * size;  // of cubics where splines run through the parameters of arcs
   EXPECT_LE(gap, 1.05 * their_gap + fit) << path;
   EXPECT_GE(gap, 0.95 * their_gap - fit) << path;
@@ -257,7 +257,7 @@ TEST(Topology, SolidsThatShareAFaceAreOneShape) {
   const Model model = value_of(read_cad(folder / "a.brep"));
   ASSERT_EQ(model.shapes.size(), 1u);
   EXPECT_EQ(model.surfaces.size(), 12u);
-  for (const auto& [uses, edges] : counts_of(model).by_uses) EXPECT_EQ(uses, 4u) << edges;
+  for (const auto& [uses, edges] : topology_counts_of(model).by_uses) EXPECT_EQ(uses, 4u) << edges;
 }
 
 }  // namespace

@@ -32,13 +32,13 @@
 namespace tessera::test {
 namespace {
 
-struct Counts {
+struct TrimRegionsCounts {
   std::size_t faces = 0, trimmed = 0, points = 0, on = 0, beside = 0, wrong = 0, unread = 0;
   std::set<LoopFault> faults;
 };
 
 /// Whether both ends of a direction are one line of the surface.
-bool is_closed(const BSplineSurface& s, bool along_u) {
+bool trim_regions_is_closed(const BSplineSurface& s, bool along_u) {
   const Domain& d = s.domain();
   double gap = 0, size = 0;
   for (int k = 0; k <= 8; ++k) {
@@ -65,7 +65,8 @@ double distance_from(const std::vector<TrimLoop>& loops, const Domain& d, double
 }
 
 /// Compares `count` random points of a face.
-void compare(const TopoDS_Face& given, int count, std::mt19937_64& random, Counts& counts, const std::string& where) {
+void trim_regions_compare(const TopoDS_Face& given, int count, std::mt19937_64& random, TrimRegionsCounts& counts,
+                          const std::string& where) {
   const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
   const Result<FaceBox> box = face_box(face);
   TopLoc_Location ignored;
@@ -78,9 +79,9 @@ void compare(const TopoDS_Face& given, int count, std::mt19937_64& random, Count
   const std::vector<TrimLoop> loops = all->whole ? std::vector<TrimLoop>() : all->loops;
   const Result<PatchGrid> grid = to_bezier(Surface(made->surface));
   ASSERT_TRUE(grid.ok()) << where;
-  const Result<TrimRegion> region =
-      TrimRegion::make(loops, grid->breaks_u(), grid->breaks_v(),
-                       {.periodic_u = is_closed(made->surface, true), .periodic_v = is_closed(made->surface, false)});
+  const Result<TrimRegion> region = TrimRegion::make(loops, grid->breaks_u(), grid->breaks_v(),
+                                                     {.periodic_u = trim_regions_is_closed(made->surface, true),
+                                                      .periodic_v = trim_regions_is_closed(made->surface, false)});
   ASSERT_TRUE(region.ok()) << where << region.status().message();
   ++counts.faces;
   counts.trimmed += !region->is_whole();
@@ -107,19 +108,19 @@ void compare(const TopoDS_Face& given, int count, std::mt19937_64& random, Count
   }
 }
 
-void compare_all(const TopoDS_Shape& shape, int count, std::mt19937_64& random, Counts& counts,
+void compare_all(const TopoDS_Shape& shape, int count, std::mt19937_64& random, TrimRegionsCounts& counts,
                  const std::string& where) {
   std::size_t k = 0;
   for (const TopoDS_Face& face : faces_of(shape)) {
     try {
-      compare(face, count, random, counts, where + " face " + std::to_string(k++));
+      trim_regions_compare(face, count, random, counts, where + " face " + std::to_string(k++));
     } catch (const Standard_Failure&) {
       ++counts.unread;
     }
   }
 }
 
-void print(const char* what, const Counts& counts) {
+void print(const char* what, const TrimRegionsCounts& counts) {
   std::printf(
       "%s: %zu faces, %zu of them trimmed, %zu unread; %zu points, %zu on borders, %zu differ beside a curve, "
       "%zu elsewhere\n",
@@ -166,7 +167,7 @@ TEST(TrimRegions, AreThoseOfOpenCascadeInEveryFormat) {
   const ScratchFolder folder;
   std::mt19937_64 random(1);
   for (const char* const extension : {".step", ".igs", ".solid.igs", ".brep"}) {
-    Counts counts;
+    TrimRegionsCounts counts;
     std::set<int> types;
     for (const auto& [name, shape] : solids()) {
       const std::string path = folder / (name + extension);
@@ -191,13 +192,13 @@ TEST(TrimRegions, OfRealFacesAreThoseOfOpenCascade) {
   const std::vector<std::filesystem::path> files = real_cad_files();
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   std::mt19937_64 random(2);
-  Counts all;
+  TrimRegionsCounts all;
   std::size_t read = 0;
   std::set<int> types;
   for (const std::filesystem::path& path : files) {
     const Result<CadFile> file = load_cad(path);
     if (!file) continue;
-    Counts counts;
+    TrimRegionsCounts counts;
     compare_all(file->shape, 300, random, counts, path.filename());
     if (counts.faces == 0) continue;
     ++read;

@@ -22,7 +22,7 @@ RayScene instances_of(const RayScene& scene, const std::vector<Affine>& maps) {
   return value_of(RayScene::make(instances));
 }
 
-void expect_same(const Hit& hit, const Hit& expected, const Ray& of, double tolerance) {
+void instance_expect_same(const Hit& hit, const Hit& expected, const Ray& of, double tolerance) {
   ASSERT_EQ(hit.kind, expected.kind);
   if (hit.kind != HitKind::hit) return;
   const double sine = std::abs(dot(expected.normal, normalized(of.direction)));
@@ -69,7 +69,7 @@ TEST(Instances, HitsOfMappedPatches) {
       EXPECT_EQ(lists.first, all_expected.first);
       std::size_t met = 0;
       for (std::size_t k = 0; k < rays.size(); ++k) {
-        expect_same(hits[k], expected[k], rays[k], tolerance);
+        instance_expect_same(hits[k], expected[k], rays[k], tolerance);
         EXPECT_EQ(placed.occluded(rays[k]), expected[k].kind == HitKind::hit);
         met += hits[k].kind == HitKind::hit;
         EXPECT_EQ(hits[k].instance, hits[k].kind == HitKind::hit ? 0 : Hit::no_instance);

@@ -8,19 +8,19 @@
 namespace tessera::test {
 namespace {
 
-void expect_same(const Vec3& a, const Vec3& b) {
+void lines_expect_same(const Vec3& a, const Vec3& b) {
   EXPECT_EQ(a.x, b.x);
   EXPECT_EQ(a.y, b.y);
   EXPECT_EQ(a.z, b.z);
 }
 
-void expect_same(const RayLine& a, const RayLine& b) {
+void lines_expect_same(const RayLine& a, const RayLine& b) {
   EXPECT_EQ(a.empty, b.empty);
   if (a.empty || b.empty) return;
-  expect_same(a.start, b.start);
-  expect_same(a.direction, b.direction);
-  expect_same(a.across[0], b.across[0]);
-  expect_same(a.across[1], b.across[1]);
+  lines_expect_same(a.start, b.start);
+  lines_expect_same(a.direction, b.direction);
+  lines_expect_same(a.across[0], b.across[0]);
+  lines_expect_same(a.across[1], b.across[1]);
   EXPECT_EQ(a.near, b.near);
   EXPECT_EQ(a.far, b.far);
   EXPECT_EQ(a.enter, b.enter);
@@ -86,7 +86,7 @@ TEST(Lines, OfATurnAreThoseOfEachRay) {
       for (std::size_t k = 0; k < rays.size(); ++k) {
         ASSERT_EQ(turn.valid()[k], is_valid(rays[k]));
         bad += !turn.valid()[k], met += !turn.line(k).empty;
-        expect_same(turn.line(k), turn.valid()[k] ? line_of(rays[k], frame, box) : RayLine{});
+        lines_expect_same(turn.line(k), turn.valid()[k] ? line_of(rays[k], frame, box) : RayLine{});
         ASSERT_FALSE(HasFailure()) << name(isa) << ", round " << round << ", ray " << k;
       }
     }

@@ -38,7 +38,7 @@ std::vector<Ray> picture() {
   return rays;
 }
 
-void expect_same(const Hit& a, const Hit& b) {
+void packet_expect_same(const Hit& a, const Hit& b) {
   EXPECT_EQ(a.kind, b.kind);
   if (a.kind != HitKind::hit || b.kind != HitKind::hit) return;
   EXPECT_EQ(a.t, b.t);
@@ -70,7 +70,7 @@ TEST(Packets, HaveTheBitsOfEachRay) {
       std::size_t met = 0;
       for (std::size_t k = 0; k < rays.size(); ++k) {
         const Hit alone = scene.closest(rays[k]);
-        expect_same(hits[k], alone);
+        packet_expect_same(hits[k], alone);
         EXPECT_EQ(occluded[k] != 0, alone.kind == HitKind::hit);
         ASSERT_FALSE(HasFailure()) << name(isa) << ", ray " << k;
         met += alone.kind == HitKind::hit;

@@ -10,7 +10,7 @@
 namespace tessera::test {
 namespace {
 
-RayScene exact_scene(const PatchSet& set, int pieces = 2) {
+RayScene proof_exact_scene(const PatchSet& set, int pieces = 2) {
   RaySceneOptions options;
   options.mode = RayMode::exact;
   options.pieces = pieces;
@@ -37,7 +37,7 @@ TEST(ExactMode, MissesNothingThatIsProven) {
     SCOPED_TRACE(rays.name);
     const PatchSet set = set_of(rays.patches);
     const double size = set.box().diagonal();
-    const RayScene scene = exact_scene(set);
+    const RayScene scene = proof_exact_scene(set);
     Random random(31);
     ProofTally tally;
     for (int k = 0; k < rays_per_class; ++k)
@@ -89,7 +89,7 @@ TEST(ExactMode, NothingLeavesAClosedBody) {
     const double scale = set.box().diagonal() / set_of(closed_body()).box().diagonal();
     const bool about_zero = length(centre) < scale;
     for (const int pieces : {1, 2, 4}) {
-      const RayScene scene = exact_scene(set, pieces);
+      const RayScene scene = proof_exact_scene(set, pieces);
       Random random(32);
       std::size_t leaks = 0, at_seams = 0;
       for (int k = 0; k < 4000; ++k) {
@@ -131,7 +131,7 @@ TEST(ExactMode, LinesCrossClosedBodiesEvenly) {
   // outside of: therefore rays aim at places where patches meet only on the smooth body.
   for (const auto& [patches, smooth] : {std::pair{closed_body(), false}, {sphere(), true}}) {
     const PatchSet set = set_of(patches);
-    const RayScene scene = exact_scene(set);
+    const RayScene scene = proof_exact_scene(set);
     Random random(33);
     std::vector<Ray> lines;
     for (int k = 0; k < 4000; ++k) {

@@ -62,8 +62,8 @@ void expect_kept(const Face& face, const RaySceneOptions& options, std::uint64_t
 }
 
 std::vector<TrimLoop> outline_with_holes() {
-  return {polygon({{0.3, 0.2, 0}, {3.7, 0.4, 0}, {3.5, 2.8, 0}, {0.5, 2.6, 0}}), circle_loop(1.5, 1.3, 0.7, true, 0.4),
-          circle_loop(2.8, 1.8, 0.45, true)};
+  return {space_polygon({{0.3, 0.2, 0}, {3.7, 0.4, 0}, {3.5, 2.8, 0}, {0.5, 2.6, 0}}),
+          circle_loop(1.5, 1.3, 0.7, true, 0.4), circle_loop(2.8, 1.8, 0.45, true)};
 }
 
 TEST(TrimmedScene, HoldsWhatLoopsKeep) {
@@ -92,10 +92,10 @@ Box3 box_of_loops(const Face& face) {
 // Leaves shrink to the kept part of a surface, however small, wherever it lies, and no hit is lost by that.
 TEST(TrimmedScene, BoxesShrinkToWhatLoopsKeep) {
   const std::vector<std::vector<TrimLoop>> small = {{circle_loop(0.9, 0.8, 0.3, false)},
-                                                    {polygon({{2.5, 1.9, 0}, {2.9, 2.1, 0}, {2.4, 2.6, 0}})},
+                                                    {space_polygon({{2.5, 1.9, 0}, {2.9, 2.1, 0}, {2.4, 2.6, 0}})},
                                                     {circle_loop(3.2, 2.3, 0.02, false)},
-                                                    {polygon({{0.2, 0.8, 0}, {3.1, 2.2, 0}, {0.2, 0.86, 0}})},
-                                                    {polygon({{0, 0, 0}, {0.3, 0, 0}, {0, 0.2, 0}})}};
+                                                    {space_polygon({{0.2, 0.8, 0}, {3.1, 2.2, 0}, {0.2, 0.86, 0}})},
+                                                    {space_polygon({{0, 0, 0}, {0.3, 0, 0}, {0, 0.2, 0}})}};
   std::uint64_t seed = 20;
   for (const std::vector<TrimLoop>& loops : small) {
     for (const BSplineSurface& surface : {plane(), wavy(), cylinder()}) {
@@ -193,7 +193,7 @@ TEST(TrimmedScene, AsksFiltersAboutKeptRootsAlone) {
 /// A closed plate with a hole, and far from it a scrap, which keeps other parameters than those of the plate's walls.
 Shape plate_and_scrap() {
   std::vector<ModelSurface> faces = drilled_plate();
-  const TrimLoop scrap = polygon({{3.6, 2.6, 0}, {3.9, 2.6, 0}, {3.9, 2.9, 0}, {3.6, 2.9, 0}});
+  const TrimLoop scrap = space_polygon({{3.6, 2.6, 0}, {3.9, 2.6, 0}, {3.9, 2.9, 0}, {3.6, 2.9, 0}});
   faces.insert(faces.begin(), rectangle_face({100, 0, 0}, {4, 0, 0}, {0, 3, 0}, {scrap}));
   return value_of(joined_shape(faces, 1e-6));
 }
@@ -257,7 +257,7 @@ TEST(TrimmedScene, RaysMeetAClosedBodyAnEvenNumberOfTimes) {
 }
 
 TEST(TrimmedScene, HitsAtALoopAreUncertifiedAndBesideItAreNot) {
-  const Face face(plane(), {polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
+  const Face face(plane(), {space_polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
   const RayScene scene = value_of(RayScene::make(face.set));
   // The plane's parameters are x and y.
   const auto at = [&](double x, double y) { return scene.closest(ray({x, y, 4}, {0, 0, -1})); };
@@ -271,7 +271,7 @@ TEST(TrimmedScene, HitsAtALoopAreUncertifiedAndBesideItAreNot) {
 
 // A ray within a plane enters what is kept of it at the loop, not at the border of the whole plane.
 TEST(TrimmedScene, RaysAlongAPlaneMeetWhatIsKept) {
-  const Face face(plane(), {polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
+  const Face face(plane(), {space_polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
   const RayScene scene = value_of(RayScene::make(face.set));
   const Hit hit = scene.closest(ray({-1, 1.5, 1}, {1, 0, 0}));
   EXPECT_EQ(hit.kind, HitKind::hit);
@@ -289,7 +289,7 @@ TrimLoop round_polygon(int corners) {
     const double angle = 2 * std::numbers::pi * k / corners;
     points.push_back({2 + 1.8 * std::cos(angle), 1.5 + 1.3 * std::sin(angle), 0});
   }
-  return polygon(points);
+  return space_polygon(points);
 }
 
 /// Compares closest hits in grid mode with those in exact mode, and occlusion with closest hits. Only silhouettes differ.
@@ -341,7 +341,7 @@ TEST(TrimmedScene, MemoryHoldsTheCellsOfRegions) {
 }
 
 TEST(TrimmedScene, InstancesAndRefitsKeepTheLoops) {
-  Face face(plane(), {polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
+  Face face(plane(), {space_polygon({{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}})});
   RayScene scene = value_of(RayScene::make(face.set, RaySceneOptions{.editable = true}));
   {
     const RayInstance instances[] = {{&scene, Affine::translated({10, 0, 0})}};

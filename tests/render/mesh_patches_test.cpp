@@ -16,7 +16,7 @@ namespace {
 
 using test::value_of;
 
-constexpr int width = 90, height = 60;
+constexpr int picture_width = 90, picture_height = 60;
 
 /// A square of two triangles or of one quad over [0,1]^2, with or without normals.
 Mesh square(bool quad) {
@@ -40,7 +40,8 @@ MeshPatches patches_of(const Mesh& mesh) {
 
 Image picture(const RayScene& scene, const Box3& box, const MeshPatches* mesh, bool edges) {
   Settings settings;
-  settings.width = width, settings.height = height, settings.samples = 2, settings.shade = Shade::normals;
+  settings.width = picture_width, settings.height = picture_height, settings.samples = 2,
+  settings.shade = Shade::normals;
   if (mesh) settings.normal = [mesh](const Hit& hit) { return mesh->normal(hit); };
   if (edges) settings.nearest_edge = [mesh](const Hit& hit, double) { return mesh->nearest_edge(hit); };
   return value_of(render(scene, box, settings));
@@ -87,13 +88,13 @@ TEST(MeshPatches, EdgesAreDark) {
   const PatchSet set = value_of(patches.pack());
   const RayScene scene = value_of(RayScene::make(set));
   Settings settings;
-  settings.width = width, settings.height = width, settings.samples = 2, settings.shade = Shade::clay;
+  settings.width = picture_width, settings.height = picture_width, settings.samples = 2, settings.shade = Shade::clay;
   settings.camera = Camera{{0.5, 0.5, 2}, {0.5, 0.5, 0}, 40, {0, 1, 0}};
   settings.nearest_edge = [&](const Hit& hit, double) { return patches.nearest_edge(hit); };
   const Image image = value_of(render(scene, set.box(), settings));
-  const auto red = [&](int x, int y) { return image.rgb[3 * static_cast<std::size_t>(y * width + x)]; };
-  EXPECT_LT(red(width / 2, width / 2), 100);       // on the diagonal
-  EXPECT_GT(red(width / 2 + 12, width / 2), 140);  // beside it
+  const auto red = [&](int x, int y) { return image.rgb[3 * static_cast<std::size_t>(y * picture_width + x)]; };
+  EXPECT_LT(red(picture_width / 2, picture_width / 2), 100);       // on the diagonal
+  EXPECT_GT(red(picture_width / 2 + 12, picture_width / 2), 140);  // beside it
 }
 
 TEST(MeshPatches, TrianglesKnowTheirPatches) {
@@ -113,15 +114,17 @@ TEST(MeshPatches, ColoursAreShown) {
   const RayScene scene = value_of(RayScene::make(set));
   for (const Shade shade : {Shade::clay, Shade::lambert}) {
     Settings settings;
-    settings.width = width, settings.height = width, settings.samples = 2, settings.shade = shade;
+    settings.width = picture_width, settings.height = picture_width, settings.samples = 2, settings.shade = shade;
     settings.up = Up::y;  // the square stands on the floor
     settings.camera = Camera{{0.5, 0.5, 2}, {0.5, 0.5, 0}, 40, {0, 1, 0}};
     settings.colour = [](const Hit& hit) {
       return hit.patch == 0 ? std::optional(Colour{0.9f, 0.1f, 0.1f}) : std::nullopt;
     };
     const Image image = value_of(render(scene, set.box(), settings));
-    const auto at = [&](int x, int y) { return &image.rgb[3 * static_cast<std::size_t>(y * width + x)]; };
-    const std::uint8_t *const red = at(width / 2 + 12, width / 2 + 8), *const plain = at(width / 2 - 12, width / 2 - 8);
+    const auto at = [&](int x, int y) { return &image.rgb[3 * static_cast<std::size_t>(y * picture_width + x)]; };
+    const std::uint8_t *const red = at(picture_width / 2 + 12, picture_width / 2 + 8), *const plain =
+                                                                                           at(picture_width / 2 - 12,
+                                                                                              picture_width / 2 - 8);
     EXPECT_GT(red[0], red[1] + 60);
     EXPECT_LT(std::abs(plain[0] - plain[1]), 30);
   }

@@ -15,7 +15,7 @@ namespace {
 
 using enum StatusCode;
 
-Mesh filled(Mesh mesh) {
+Mesh bad_meshes_filled(Mesh mesh) {
   for (auto* floats : {&mesh.positions, &mesh.normals, &mesh.parameters}) std::ranges::fill(*floats, -77.0f);
   for (auto* integers : {&mesh.patches, &mesh.indices}) std::ranges::fill(*integers, 77777777u);
   return mesh;
@@ -27,7 +27,7 @@ bool same(const Mesh& a, const Mesh& b) {
 
 /// The rows of a plan's run().
 void bad_mesh_views(Table& table, const PatchSet& set, const Tessellation& plan) {
-  Mesh mesh = filled(value_of(plan.allocate()));
+  Mesh mesh = bad_meshes_filled(value_of(plan.allocate()));
   const Mesh clean = mesh;
   const auto refused = [&](const std::string& input, StatusCode code, const MeshViews& views) {
     table.row(input, code, plan.run(set, views), [&] { return same(mesh, clean); });
@@ -121,7 +121,7 @@ void other_sets(Table& table, const TessellationOptions& options) {
   const std::vector<BezierPatch> patches = wavy_field(1, 2);
   PatchSet set = set_of(patches);
   const Tessellation plan = value_of(Tessellation::make(set, options));
-  Mesh mesh = filled(value_of(plan.allocate()));
+  Mesh mesh = bad_meshes_filled(value_of(plan.allocate()));
   const Mesh clean = mesh;
   const PatchSet longer = set_of(wavy_field(1, 3)),
                  steeper = set_of({patches[0], *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4))});

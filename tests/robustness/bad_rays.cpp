@@ -11,7 +11,7 @@ namespace {
 
 using enum StatusCode;
 
-constexpr Ray sound{.origin = {0.5, 0.5, 5}, .direction = {0, 0, -1}};
+constexpr Ray sound_ray{.origin = {0.5, 0.5, 5}, .direction = {0, 0, -1}};
 
 void scenes(Table& table) {
   const PatchSet set = set_of(wavy_field(1, 1));
@@ -46,12 +46,12 @@ void scenes(Table& table) {
 }
 
 /// Rays that are not valid, each a miss of its own kind.
-void bad_rays(Table& table, const RayScene& scene) {
+void bad_single_rays(Table& table, const RayScene& scene) {
   const auto row = [&](const std::string& input, auto spoil) {
-    Ray ray = sound;
+    Ray ray = sound_ray;
     spoil(ray);
     std::array<Hit, 3> hits;
-    const std::array rays{sound, ray, sound};
+    const std::array rays{sound_ray, ray, sound_ray};
     std::array<std::uint8_t, 3> dark{7, 7, 7};
     const bool answered = scene.closest(rays, hits).ok() && scene.occluded(rays, dark).ok();
     const Hit &first = hits[0], &hit = hits[1];
@@ -80,7 +80,7 @@ void bad_rays(Table& table, const RayScene& scene) {
 
 void unusual_rays(Table& table, const RayScene& scene) {
   const auto kind = [&](auto change) {
-    Ray ray = sound;
+    Ray ray = sound_ray;
     change(ray);
     return scene.closest(ray).kind;
   };
@@ -95,13 +95,13 @@ void unusual_rays(Table& table, const RayScene& scene) {
                                                            }) == HitKind::miss);
 }
 
-void batches(Table& table, const std::string& mode, const RaySceneOptions& options) {
+void rays_as_batches(Table& table, const std::string& mode, const RaySceneOptions& options) {
   PatchSet set = set_of(wavy_field(1, 1));
   const RayScene scene = value_of(RayScene::make(set, options));
   table.of("RayScene::closest, occluded(rays, results), " + mode);
-  bad_rays(table, scene);
+  bad_single_rays(table, scene);
   unusual_rays(table, scene);
-  const std::vector<Ray> rays(5, sound);
+  const std::vector<Ray> rays(5, sound_ray);
   std::vector<Hit> hits(5);
   std::vector<std::uint8_t> dark(5, 7);
   const auto untouched = [&] {
@@ -127,15 +127,15 @@ void batches(Table& table, const std::string& mode, const RaySceneOptions& optio
   table.row("a set that was edited since: occluded()", stale, scene.occluded(rays, dark), untouched);
   table.row("a set that was edited since: all()", stale, scene.all(rays, lists), empty);
   table.gives("a set that was edited since, one ray", "HitKind::invalid_ray, not occluded",
-              scene.closest(sound).kind == HitKind::invalid_ray && !scene.occluded(sound));
+              scene.closest(sound_ray).kind == HitKind::invalid_ray && !scene.occluded(sound_ray));
 }
 
 }  // namespace
 
 void fill_rays(Table& table) {
   scenes(table);
-  batches(table, "exact mode", {});
-  batches(table, "grid mode", {.mode = RayMode::grid});
+  rays_as_batches(table, "exact mode", {});
+  rays_as_batches(table, "grid mode", {.mode = RayMode::grid});
 }
 
 }  // namespace tessera::test

@@ -10,7 +10,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double local_geometry_nan = std::numeric_limits<double>::quiet_NaN();
 
 SurfaceJet torus(double big, double small, double u, double v) {
   const double cu = std::cos(u), su = std::sin(u), cv = std::cos(v), sv = std::sin(v), r = big + small * cv;
@@ -145,9 +145,12 @@ TEST(LocalGeometry, CloseCurvaturesKeepTheirDifference) {
 
 TEST(LocalGeometry, UndefinedIsFlaggedAndZero) {
   const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  const SurfaceJet bad[] = {{{}, x, 2 * x, z, z, z},       {{}, {}, y, z, z, z},
-                            {{}, {}, {}, {}, {}, {}},      {{}, x, x + 1e-12 * y, z, z, z},
-                            {{}, {nan, 0, 0}, y, z, z, z}, {{}, x, y, {0, 0, nan}, z, z}};
+  const SurfaceJet bad[] = {{{}, x, 2 * x, z, z, z},
+                            {{}, {}, y, z, z, z},
+                            {{}, {}, {}, {}, {}, {}},
+                            {{}, x, x + 1e-12 * y, z, z, z},
+                            {{}, {local_geometry_nan, 0, 0}, y, z, z, z},
+                            {{}, x, y, {0, 0, local_geometry_nan}, z, z}};
   for (const SurfaceJet& jet : bad) {
     const LocalGeometry g = local_geometry(jet);
     EXPECT_FALSE(g.defined);
@@ -175,7 +178,7 @@ TEST(LocalGeometry, PolesHaveALimitNormalAlone) {
   ASSERT_TRUE(near.defined);
   EXPECT_NEAR(near.gaussian, 1, 1e-7);
   EXPECT_NEAR(local_geometry(octant, 0.3, 0.6).mean, 1, 1e-13);
-  EXPECT_FALSE(local_geometry(octant, nan, 0).defined);
+  EXPECT_FALSE(local_geometry(octant, local_geometry_nan, 0).defined);
 }
 
 TEST(Net, OrthogonalAndConjugateOnes) {
@@ -233,7 +236,7 @@ TEST(Net, RefusesBadOptions) {
   const BezierPatch patch = polynomial(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 1}});
   EXPECT_EQ(measure_net(patch, {.samples = 1}).status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(measure_net(patch, {.samples = 1001}).status().code(), StatusCode::invalid_argument);
-  EXPECT_EQ(measure_net(patch, {.tolerance = nan}).status().code(), StatusCode::invalid_argument);
+  EXPECT_EQ(measure_net(patch, {.tolerance = local_geometry_nan}).status().code(), StatusCode::invalid_argument);
   const auto dot = measure_net(polynomial(1, 1, std::vector<Vec3>(4)));
   ASSERT_TRUE(dot.ok());
   EXPECT_EQ(dot->undefined_samples, 17 * 17);

@@ -8,8 +8,8 @@
 namespace tessera::test {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double quadric_ray_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double quadric_ray_infinity = std::numeric_limits<double>::infinity();
 
 TEST(QuadricRay, GoesThroughWhatItWasAimedAt) {
   Random random(1);
@@ -24,7 +24,7 @@ TEST(QuadricRay, GoesThroughWhatItWasAimedAt) {
         const double t = uniform(random, -20, 20) / length(direction);
         const QuadricHits hits = intersect(part, target - t * direction, direction);
         if (hits.contained) continue;
-        double nearest = infinity;
+        double nearest = quadric_ray_infinity;
         for (int h = 0; h < hits.count; ++h)
           nearest = std::min(nearest, std::abs(hits.t[static_cast<std::size_t>(h)] - t) * length(direction));
         // Near tangency a root has half the digits.
@@ -110,7 +110,7 @@ TEST(QuadricRay, PiecesAreHitWithinTheirRanges) {
 
 TEST(QuadricRay, BadRaysHitNothing) {
   const Quadric sphere = quadric({.a = 1, .b = 1, .c = 1, .k = -1});
-  for (const double bad : {nan, infinity})
+  for (const double bad : {quadric_ray_nan, quadric_ray_infinity})
     for (const auto component : {&Vec3::x, &Vec3::y, &Vec3::z}) {
       Vec3 origin{-3, 0, 0}, direction{1, 0, 0};
       origin.*component = bad;

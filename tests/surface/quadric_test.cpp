@@ -11,9 +11,9 @@
 namespace tessera::test {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pi = std::numbers::pi;
+constexpr double quadric_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double quadric_infinity = std::numeric_limits<double>::infinity();
+constexpr double quadric_pi = std::numbers::pi;
 
 QuadricCoefficients times(double s, const QuadricCoefficients& q) {
   return {s * q.a, s * q.b, s * q.c, s * q.d, s * q.e, s * q.f, s * q.g, s * q.h, s * q.j, s * q.k};
@@ -100,7 +100,7 @@ TEST(Quadric, ToleranceDecides) {
 
 TEST(Quadric, RefusesBadCoefficients) {
   const double good[10] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
-  for (const double bad : {nan, infinity, -infinity})
+  for (const double bad : {quadric_nan, quadric_infinity, -quadric_infinity})
     for (std::ptrdiff_t k = 0; k < 10; ++k) {
       double q[10];
       std::copy(good, good + 10, q);
@@ -113,9 +113,9 @@ TEST(Quadric, RefusesBadCoefficients) {
   EXPECT_EQ(Quadric::make({}).status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(Quadric::make({}).status().message(),
             "all ten coefficients of the quadric are 0: every point satisfies it");
-  for (const double bad : {0.0, -1.0, 0.5, nan})
+  for (const double bad : {0.0, -1.0, 0.5, quadric_nan})
     EXPECT_EQ(Quadric::make({.a = 1}, {.tolerance = bad}).status().code(), StatusCode::invalid_argument);
-  for (const double bad : {-1.0, nan, infinity})
+  for (const double bad : {-1.0, quadric_nan, quadric_infinity})
     EXPECT_EQ(Quadric::make({.a = 1}, {.length = bad}).status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(Quadric::make({.a = 1e-310, .h = 1}).status().code(), StatusCode::non_finite);
 }
@@ -182,13 +182,13 @@ TEST(QuadricPiece, ParametersOfAnySize) {
 
 TEST(QuadricPiece, LocateKnowsThePieceFromTheRest) {
   const Quadric sphere = quadric({.a = 1, .b = 1, .c = 1, .k = -1});
-  const QuadricPiece part = piece(sphere, {3 * pi / 2, 5 * pi / 2, 0, pi / 2});
+  const QuadricPiece part = piece(sphere, {3 * quadric_pi / 2, 5 * quadric_pi / 2, 0, quadric_pi / 2});
   EXPECT_TRUE(part.locate({1, 0, 0}).has_value());
-  EXPECT_NEAR(part.locate({1, 0, 0})->u, 2 * pi, 1e-12);
+  EXPECT_NEAR(part.locate({1, 0, 0})->u, 2 * quadric_pi, 1e-12);
   EXPECT_TRUE(part.locate({0, 0, 1}).has_value());
   EXPECT_FALSE(part.locate({-1, 0, 0}).has_value());
   EXPECT_FALSE(part.locate({0.6, 0, -0.8}).has_value());
-  EXPECT_FALSE(part.locate({nan, 0, 0}).has_value());
+  EXPECT_FALSE(part.locate({quadric_nan, 0, 0}).has_value());
 }
 
 TEST(QuadricPiece, RefusesBadRanges) {
@@ -201,9 +201,9 @@ TEST(QuadricPiece, RefusesBadRanges) {
   EXPECT_EQ(code(sphere, {0, 6.3, 0, 1}), StatusCode::invalid_argument);
   EXPECT_EQ(code(sphere, {0, 1, 0, 1.6}), StatusCode::invalid_argument);
   EXPECT_EQ(code(sphere, {200, 201, 0, 1}), StatusCode::invalid_argument);
-  EXPECT_EQ(code(sphere, {nan, 1, 0, 1}), StatusCode::non_finite);
-  EXPECT_EQ(code(sphere, {0, 1, 0, infinity}), StatusCode::non_finite);
-  EXPECT_EQ(code(sphere, {0, 2 * pi, -pi / 2, pi / 2}), StatusCode::ok);
+  EXPECT_EQ(code(sphere, {quadric_nan, 1, 0, 1}), StatusCode::non_finite);
+  EXPECT_EQ(code(sphere, {0, 1, 0, quadric_infinity}), StatusCode::non_finite);
+  EXPECT_EQ(code(sphere, {0, 2 * quadric_pi, -quadric_pi / 2, quadric_pi / 2}), StatusCode::ok);
   EXPECT_EQ(code(sphere, {0, 1, 0, 1}, 1), StatusCode::invalid_argument);
   EXPECT_EQ(code(sphere, {0, 1, 0, 1}, -1), StatusCode::invalid_argument);
   EXPECT_EQ(code(quadric({.a = 1, .b = 1, .c = -1, .k = -1}), {0, 1, 0, 301}), StatusCode::invalid_argument);

@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-const double pi = std::acos(-1.0);
+const double ruled_surface_pi = std::acos(-1.0);
 
 RuledSurface ruled(const BorderCurve& first, const BorderCurve& second, const Interval& across = {},
                    Direction straight = Direction::v) {
@@ -20,12 +20,13 @@ RuledSurface ruled(const BorderCurve& first, const BorderCurve& second, const In
 }
 
 TEST(RuledFigures, BetweenCallables) {
-  const RuledSurface quarter = ruled(callable([](double u) {
-                                       return Vec3{u, std::sin(pi * u / 2), std::cos(pi * u / 2)};
-                                     }),
-                                     callable([](double u) {
-                                       return Vec3{u, u * u, -u / 2};
-                                     }));
+  const RuledSurface quarter =
+      ruled(callable([](double u) {
+              return Vec3{u, std::sin(ruled_surface_pi * u / 2), std::cos(ruled_surface_pi * u / 2)};
+            }),
+            callable([](double u) {
+              return Vec3{u, u * u, -u / 2};
+            }));
   const Vec3 p = value_of(position(quarter, 0.25, 0.75));
   EXPECT_EQ(p.x, 0.25);
   EXPECT_NEAR(p.y, 0.142545858, 5e-10);
@@ -34,7 +35,7 @@ TEST(RuledFigures, BetweenCallables) {
                                     return Vec3{u, 0, 4 * u * (1 - u)};
                                   }),
                                   callable([](double u) {
-                                    return Vec3{u, 1, std::sin(2 * pi * u)};
+                                    return Vec3{u, 1, std::sin(2 * ruled_surface_pi * u)};
                                   }));
   EXPECT_TRUE(within_units(value_of(position(wave, 0.25, 0.75)), {0.25, 0.75, 0.9375}, double_unit, 1));
 }

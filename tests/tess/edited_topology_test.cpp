@@ -48,9 +48,9 @@ struct Counts {
 };
 
 /// A set that follows edits, and what is known of it.
-class Followed {
+class EditedTopologyFollowed {
  public:
-  Followed(Random& random, Counts& counts)
+  EditedTopologyFollowed(Random& random, Counts& counts)
       : random_(random),
         counts_(counts),
         set_(set_of(random_set(random))),
@@ -205,7 +205,7 @@ TEST(EditedTopology, BoundsAndNeighboursHold) {
   for (std::uint64_t seed = number_of("TESSERA_FIRST_SET", 1); counts.edits < wanted; ++seed) {
     SCOPED_TRACE("set " + std::to_string(seed));
     Random random(seed);
-    Followed body(random, counts);
+    EditedTopologyFollowed body(random, counts);
     if (!body.start()) continue;
     for (int k = 0; k < 8 && body.edit(); ++k) {
     }

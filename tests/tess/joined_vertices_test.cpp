@@ -19,7 +19,7 @@ Tessellation plan_of(const PatchSet& set, const TessellationOptions& options) {
   return good(Tessellation::make(set, options));
 }
 
-std::vector<BezierPatch> turned(std::vector<BezierPatch> patches, std::uint64_t seed) {
+std::vector<BezierPatch> joined_vertices_turned(std::vector<BezierPatch> patches, std::uint64_t seed) {
   Random random(seed);
   for (BezierPatch& patch : patches) patch = reoriented(patch, static_cast<int>(random() % 8));
   return patches;
@@ -93,10 +93,10 @@ struct Case {
 std::vector<Case> cases() {
   return {{"field", wavy_field(7, 6)},
           {"body", closed_body()},
-          {"turned body", turned(closed_body(), 2)},
+          {"turned body", joined_vertices_turned(closed_body(), 2)},
           {"sphere", sphere()},
           {"torn sphere", torn(sphere(), 1e-7), 1e-5},
-          {"torn body", torn(turned(closed_body(), 4), 1e-5), 1e-3},
+          {"torn body", torn(joined_vertices_turned(closed_body(), 4), 1e-5), 1e-3},
           {"smooth", smooth_field()},
           {"apart", mixed_patches(3, 30)}};
 }
@@ -225,7 +225,7 @@ TEST(JoinedNormals, ThePointOfAConeKeepsItsNormals) {
 }
 
 TEST(SharedVertices, TheSameBytesForAnyNumberOfThreads) {
-  const PatchSet set = set_of(turned(wavy_field(20, 20), 6));
+  const PatchSet set = set_of(joined_vertices_turned(wavy_field(20, 20), 6));
   Mesh first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);

@@ -60,7 +60,7 @@ std::vector<BezierPatch> soup(std::uint64_t seed) {
   return patches;
 }
 
-Tessellation planned(const std::vector<BezierPatch>& patches, const TessellationOptions& options) {
+Tessellation local_decisions_planned(const std::vector<BezierPatch>& patches, const TessellationOptions& options) {
   const PatchSet set = good(PatchSet::make(patches, {.origin = Vec3{}}));
   return good(Tessellation::make(set, options));
 }
@@ -74,7 +74,7 @@ std::vector<BezierPatch> picked(const std::vector<BezierPatch>& patches, const s
 /// Counts the patches among `which` that are divided otherwise, or have another bound, without the rest of the set.
 std::size_t changed(const std::vector<BezierPatch>& patches, const Tessellation& whole,
                     const std::vector<std::size_t>& which, const TessellationOptions& options) {
-  const Tessellation part = planned(picked(patches, which), options);
+  const Tessellation part = local_decisions_planned(picked(patches, which), options);
   std::size_t count = 0;
   for (std::size_t k = 0; k < which.size(); ++k)
     count += !(proven_mesh_of(part).plan().segments()[k] == proven_mesh_of(whole).plan().segments()[which[k]]) ||
@@ -85,7 +85,7 @@ std::size_t changed(const std::vector<BezierPatch>& patches, const Tessellation&
 
 /// Removes each third patch, one after the other of three, takes every patch alone, and reverses the order.
 std::size_t changed_by_others(const std::vector<BezierPatch>& patches, const TessellationOptions& options) {
-  const Tessellation whole = planned(patches, options);
+  const Tessellation whole = local_decisions_planned(patches, options);
   std::vector<std::size_t> all(patches.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   std::size_t count = 0;

@@ -13,31 +13,31 @@
 namespace tessera::test {
 namespace {
 
-Tessellation plan_of(const PatchSet& set, double tolerance) {
+Tessellation mesh_tables_plan_of(const PatchSet& set, double tolerance) {
   return good(Tessellation::make(set, {.tolerance = tolerance}));
 }
 const MeshTables& tables_of(const Tessellation& plan) { return proven_mesh_of(plan).tables(); }
 
 TEST(MeshTables, PlansThatNeedTheSameShareThem) {
   const PatchSet body = set_of(closed_body()), ball = set_of(sphere());
-  const Tessellation before = plan_of(body, 0.01), coarse = plan_of(body, 0.02), after = plan_of(body, 0.01),
-                     other = plan_of(ball, 0.01);
+  const Tessellation before = mesh_tables_plan_of(body, 0.01), coarse = mesh_tables_plan_of(body, 0.02),
+                     after = mesh_tables_plan_of(body, 0.01), other = mesh_tables_plan_of(ball, 0.01);
   EXPECT_EQ(&tables_of(after), &tables_of(coarse));  // to which the coarse ones were added
   EXPECT_NE(&tables_of(after), &tables_of(other));
 }
 
 TEST(MeshTables, PlansOutliveTheSet) {
   const PatchSet body = set_of(closed_body());
-  const Mesh wanted = mesh_of(body, plan_of(body, 0.01));
+  const Mesh wanted = mesh_of(body, mesh_tables_plan_of(body, 0.01));
   auto first = std::make_unique<PatchSet>(set_of(closed_body()));
-  const Tessellation plan = plan_of(*first, 0.01);
+  const Tessellation plan = mesh_tables_plan_of(*first, 0.01);
   first.reset();
   EXPECT_EQ(mesh_of(body, plan).positions, wanted.positions);
 }
 
 TEST(MeshTables, LargeOnesAreOfTheirPlanAlone) {
   const PatchSet body = set_of(closed_body());
-  const Tessellation large = plan_of(body, 1.5e-6), next = plan_of(body, 0.01);
+  const Tessellation large = mesh_tables_plan_of(body, 1.5e-6), next = mesh_tables_plan_of(body, 0.01);
   EXPECT_GT(tables_of(large).bytes(), MeshTables::max_common_bytes);
   EXPECT_LE(tables_of(next).bytes(), MeshTables::max_common_bytes);
 }
@@ -46,8 +46,8 @@ TEST(MeshTables, CommonOnesStaySmall) {
   const PatchSet body = set_of(closed_body());
   std::size_t largest = 0, times_anew = 0, last = 0;
   for (int step = 0; step < 300; ++step) {
-    (void)plan_of(body, 0.3 * std::pow(0.97, step));
-    const Tessellation plan = plan_of(body, 0.01);
+    (void)mesh_tables_plan_of(body, 0.3 * std::pow(0.97, step));
+    const Tessellation plan = mesh_tables_plan_of(body, 0.01);
     const std::size_t bytes = tables_of(plan).bytes();
     EXPECT_LE(bytes, MeshTables::max_common_bytes);
     times_anew += bytes < last;
@@ -64,7 +64,7 @@ TEST(MeshTables, MeshesAreTheSameWhateverCameBefore) {
     for (int n = 0; n < 12; ++n) {
       const int k = (first + 5 * n) % 12;
       const PatchSet set = set_of(mixed_patches(static_cast<std::uint64_t>(k), 20));
-      all[static_cast<std::size_t>(k)] = mesh_of(set, plan_of(set, k % 2 == 0 ? 0.1 : 0.01));
+      all[static_cast<std::size_t>(k)] = mesh_of(set, mesh_tables_plan_of(set, k % 2 == 0 ? 0.1 : 0.01));
     }
     return all;
   };

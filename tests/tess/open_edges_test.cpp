@@ -16,7 +16,7 @@ BezierPatch rectangle(const Vec3& corner, const Vec3& along_u, const Vec3& along
   return polynomial(1, 1, {corner, corner + along_v, corner + along_u, corner + along_u + along_v});
 }
 
-MeshReport report_of(const PatchSet& set, const TessellationOptions& options) {
+MeshReport open_edges_report_of(const PatchSet& set, const TessellationOptions& options) {
   const Tessellation plan = good(Tessellation::make(set, options));
   const MeshReport report = good(check(mesh_of(set, plan)));
   EXPECT_EQ(plan.open_edges(), report.open_edges);
@@ -26,15 +26,15 @@ MeshReport report_of(const PatchSet& set, const TessellationOptions& options) {
 
 TEST(OpenEdges, AreThoseOfTheMesh) {
   for (const double tolerance : {0.3, 0.03, 0.003}) {
-    EXPECT_GT(report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance}).open_edges, 0u);
-    EXPECT_EQ(report_of(set_of(sphere()), {.tolerance = tolerance}).open_edges, 0u);
-    EXPECT_EQ(report_of(set_of(closed_body()), {.tolerance = tolerance}).open_edges, 0u);
-    report_of(set_of(mixed_patches(9, 40)), {.tolerance = tolerance});
-    report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance, .fewest = true});
-    report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance, .angle = 0.2, .share_vertices = true});
+    EXPECT_GT(open_edges_report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance}).open_edges, 0u);
+    EXPECT_EQ(open_edges_report_of(set_of(sphere()), {.tolerance = tolerance}).open_edges, 0u);
+    EXPECT_EQ(open_edges_report_of(set_of(closed_body()), {.tolerance = tolerance}).open_edges, 0u);
+    open_edges_report_of(set_of(mixed_patches(9, 40)), {.tolerance = tolerance});
+    open_edges_report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance, .fewest = true});
+    open_edges_report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance, .angle = 0.2, .share_vertices = true});
     const PatchSet torn = set_of(shaken(wavy_field(4, 4), 1e-3, 3));
-    EXPECT_GT(report_of(torn, {.tolerance = tolerance, .weld = 0}).open_edges,
-              report_of(torn, {.tolerance = tolerance, .weld = 0.01}).open_edges);
+    EXPECT_GT(open_edges_report_of(torn, {.tolerance = tolerance, .weld = 0}).open_edges,
+              open_edges_report_of(torn, {.tolerance = tolerance, .weld = 0.01}).open_edges);
   }
 }
 
@@ -43,7 +43,7 @@ TEST(OpenEdges, AreClosedByDefaultWhereBordersLieNearerThanAnEighthOfTheToleranc
     for (const double by : {1e-15, 1e-9, 1e-5, 1e-3}) {
       const PatchSet set = set_of(shaken(body, by, 7));
       for (const double tolerance : {0.5, 0.1, 0.04}) {
-        const MeshReport report = report_of(set, {.tolerance = tolerance});
+        const MeshReport report = open_edges_report_of(set, {.tolerance = tolerance});
         // The sphere's poles are points only up to the rounding of six digits.
         if (body.size() != sphere().size() || by < 1e-8) {
           EXPECT_EQ(report.open_edges, 0u) << by << ' ' << tolerance;
@@ -54,10 +54,10 @@ TEST(OpenEdges, AreClosedByDefaultWhereBordersLieNearerThanAnEighthOfTheToleranc
   const auto gap = [](double width) {
     return set_of({rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), rectangle({1 + width, 0, 0}, {1, 0, 0.3}, {0, 1, 0})});
   };
-  EXPECT_EQ(report_of(gap(0.0124), {.tolerance = 0.1}).open_edges, 6u);
-  EXPECT_EQ(report_of(gap(0.0126), {.tolerance = 0.1}).open_edges, 8u);
-  EXPECT_EQ(report_of(gap(1e-7), {.tolerance = 0.1, .weld = 0}).open_edges, 8u);
-  EXPECT_EQ(report_of(gap(1e-7), {.angle = 0.1}).open_edges, 6u);
+  EXPECT_EQ(open_edges_report_of(gap(0.0124), {.tolerance = 0.1}).open_edges, 6u);
+  EXPECT_EQ(open_edges_report_of(gap(0.0126), {.tolerance = 0.1}).open_edges, 8u);
+  EXPECT_EQ(open_edges_report_of(gap(1e-7), {.tolerance = 0.1, .weld = 0}).open_edges, 8u);
+  EXPECT_EQ(open_edges_report_of(gap(1e-7), {.angle = 0.1}).open_edges, 6u);
 }
 
 /// Small parts are joined only where they lie near for their own size, whatever the tolerance.
@@ -65,7 +65,7 @@ TEST(OpenEdges, OfPartsSmallerThanTheWeldStay) {
   std::vector<BezierPatch> patches = closed_body();
   const double size = 0.01;
   for (const double x : {3.0, 3.0 + 1.5 * size}) patches.push_back(rectangle({x, 0, 0}, {size, 0, 0}, {0, size, 0}));
-  const MeshReport report = report_of(set_of(patches), {.tolerance = 0.2});
+  const MeshReport report = open_edges_report_of(set_of(patches), {.tolerance = 0.2});
   EXPECT_EQ(report.open_edges, 8u);
   EXPECT_EQ(report.degenerate_triangles, 0u);
 }
@@ -85,17 +85,17 @@ TEST(OpenEdges, OfThreeBordersThatNearlyCoincideAreJoinedToOne) {
 TEST(OpenEdges, OfAStripThinnerThanTheWeldStayItsOwn) {
   const double width = 1e-3;
   const BezierPatch strip = rectangle({0, 0, 0}, {1, 0, 0}, {0, width, 0});
-  EXPECT_EQ(report_of(set_of({strip}), {.tolerance = 0.1}).open_edges, 4u);
+  EXPECT_EQ(open_edges_report_of(set_of({strip}), {.tolerance = 0.1}).open_edges, 4u);
   // Between neighbours whose borders lie nearer than the strip is wide.
   const PatchSet set = set_of(
       {strip, rectangle({0, -1e-6, 0}, {1, 0, 0}, {0, -1, 0}), rectangle({0, width + 1e-6, 0}, {1, 0, 0}, {0, 1, 0})});
-  const MeshReport report = report_of(set, {.tolerance = 0.1});
+  const MeshReport report = open_edges_report_of(set, {.tolerance = 0.1});
   EXPECT_EQ(report.open_edges, 8u);
   EXPECT_EQ(report.degenerate_triangles, 0u);
   // At the rim of a larger patch.
   const PatchSet rim = set_of({rectangle({0, 0, 0}, {1, 0, 0}, {0, -1, 0}), strip});
-  EXPECT_EQ(report_of(rim, {.tolerance = 0.1}).open_edges, 6u);
-  EXPECT_EQ(report_of(rim, {.tolerance = 0.1, .weld = 2 * width}).degenerate_triangles, 0u);
+  EXPECT_EQ(open_edges_report_of(rim, {.tolerance = 0.1}).open_edges, 6u);
+  EXPECT_EQ(open_edges_report_of(rim, {.tolerance = 0.1, .weld = 2 * width}).degenerate_triangles, 0u);
 }
 
 /// The vertices of each patch are the same bytes whatever the order of the patches and whatever else the set has.

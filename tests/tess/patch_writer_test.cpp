@@ -17,7 +17,8 @@
 namespace tessera::test {
 namespace {
 
-Mesh mesh_of(const PatchSet& set, double tolerance, std::optional<Isa> isa = {}, Stores stores = Stores::automatic) {
+Mesh patch_writer_mesh_of(const PatchSet& set, double tolerance, std::optional<Isa> isa = {},
+                          Stores stores = Stores::automatic) {
   const Tessellation plan = good(Tessellation::make(set, {.tolerance = tolerance, .isa = isa}));
   Mesh mesh = good(plan.allocate());
   ExecutionReport report;
@@ -30,7 +31,7 @@ Mesh mesh_of(const PatchSet& set, double tolerance, std::optional<Isa> isa = {},
 }
 
 /// Sets with all paths of the kernels: bicubic, other degrees, rational, poles; rates from 1 to beyond a hundred.
-std::vector<std::pair<PatchSet, double>> cases() {
+std::vector<std::pair<PatchSet, double>> patch_writer_cases() {
   std::vector<std::pair<PatchSet, double>> all;
   for (const double tolerance : {0.1, 3e-3, 1e-4}) {
     all.emplace_back(set_of(closed_body()), tolerance);
@@ -50,10 +51,10 @@ void expect_equal(const Mesh& a, const Mesh& b) {
 }
 
 TEST(PatchWriter, TheSameBytesOnEveryInstructionSetThatFuses) {
-  for (const auto& [set, tolerance] : cases()) {
+  for (const auto& [set, tolerance] : patch_writer_cases()) {
     std::optional<Mesh> first;
     for (const Isa isa : available_isas()) {
-      const Mesh mesh = mesh_of(set, tolerance, isa);
+      const Mesh mesh = patch_writer_mesh_of(set, tolerance, isa);
       const MeshReport report = good(check(mesh));
       EXPECT_EQ(report.non_manifold_edges, 0u);
       EXPECT_EQ(report.non_finite_vertices, 0u);
@@ -65,15 +66,16 @@ TEST(PatchWriter, TheSameBytesOnEveryInstructionSetThatFuses) {
 }
 
 TEST(PatchWriter, StreamingAndPlainStoresGiveTheSameBytes) {
-  for (const auto& [set, tolerance] : cases())
+  for (const auto& [set, tolerance] : patch_writer_cases())
     for (const Isa isa : available_isas())
-      expect_equal(mesh_of(set, tolerance, isa, Stores::streaming), mesh_of(set, tolerance, isa, Stores::plain));
+      expect_equal(patch_writer_mesh_of(set, tolerance, isa, Stores::streaming),
+                   patch_writer_mesh_of(set, tolerance, isa, Stores::plain));
 }
 
 TEST(PatchWriter, EveryLayoutHoldsTheSameNumbersAndNothingElseIsTouched) {
   const PatchSet set = set_of(wavy_field(9, 7));
   const Tessellation plan = good(Tessellation::make(set, {.tolerance = 2e-3}));
-  const Mesh mesh = mesh_of(set, 2e-3);
+  const Mesh mesh = patch_writer_mesh_of(set, 2e-3);
   const std::size_t vertices = plan.capacity().vertices, indices = 3 * plan.capacity().triangles;
   const float untouched = -1.5e33f;
   for (const Stores stores : {Stores::plain, Stores::streaming})
@@ -105,13 +107,13 @@ TEST(PatchWriter, EveryLayoutHoldsTheSameNumbersAndNothingElseIsTouched) {
 }
 
 TEST(PatchWriter, PositionsAloneAreThoseWithNormals) {
-  for (const auto& [set, tolerance] : cases()) {
+  for (const auto& [set, tolerance] : patch_writer_cases()) {
     const Tessellation plan = good(Tessellation::make(set, {.tolerance = tolerance}));
     Mesh mesh = good(plan.allocate());
     MeshViews views = mesh.views();
     views.normal = {};
     ASSERT_TRUE(plan.run(set, views).ok());
-    EXPECT_EQ(mesh.positions, mesh_of(set, tolerance).positions);
+    EXPECT_EQ(mesh.positions, patch_writer_mesh_of(set, tolerance).positions);
   }
 }
 
@@ -121,7 +123,7 @@ TEST(PatchWriter, VerticesAtPolesHaveTheNormalsOfTheirLimits) {
   double most = 0;
   for (const std::uint64_t seed : {5, 6, 7}) {
     const PatchSet set = set_of(mixed_patches(seed, 40));  // every fifth is a point at u = 0
-    const Mesh mesh = mesh_of(set, 0.02);
+    const Mesh mesh = patch_writer_mesh_of(set, 0.02);
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::size_t k = mesh.indices[3 * t + corner];
@@ -144,8 +146,8 @@ TEST(PatchWriter, VerticesAtPolesHaveTheNormalsOfTheirLimits) {
 /// Every vertex lies at its float parameters, within the rounding that the certificate counts and theirs, and its
 /// normal is the patch's.
 TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {
-  for (const auto& [set, tolerance] : cases()) {
-    const Mesh mesh = mesh_of(set, tolerance);
+  for (const auto& [set, tolerance] : patch_writer_cases()) {
+    const Mesh mesh = patch_writer_mesh_of(set, tolerance);
     std::size_t wrong = 0, turned = 0;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -167,10 +169,10 @@ TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {
 }
 
 TEST(PatchWriter, TrianglesAreThoseOfTheDivisions) {
-  for (const auto& [set, tolerance] : cases()) {
+  for (const auto& [set, tolerance] : patch_writer_cases()) {
     const CertifiedPlanner planner = good(CertifiedPlanner::make(impl_of(set), PlannerOptions{}, {}));
     const CertifiedPlan plan = good(planner.plan(tolerance, std::uint64_t{1} << 30, {}));
-    const Mesh mesh = mesh_of(set, tolerance);
+    const Mesh mesh = patch_writer_mesh_of(set, tolerance);
     std::vector<std::uint32_t> expected(mesh.indices.size());
     for (std::size_t k = 0; k < plan.patch_count(); ++k)
       plan.division(k).write_triangles(static_cast<std::uint32_t>(plan.first_vertex(k)),

@@ -64,15 +64,15 @@ Vec3 nearest_of_triangle(const Vec3& p, const Vec3 (&corner)[3]) {
   return corner[0] + a0 * (corner[1] - corner[0]) + b0 * (corner[2] - corner[0]);
 }
 
-struct Found {
+struct PixelFound {
   double share = 0;      ///< the largest distance in the picture, over the patch's bound
   std::size_t seen = 0;  ///< points in the frame
 };
 
-Found found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, const View& view,
-                       Random& random) {
+PixelFound pixel_found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, const View& view,
+                                  Random& random) {
   const Pinhole camera(view);
-  Found found;
+  PixelFound found;
   const std::size_t step = std::max<std::size_t>(mesh.triangle_count() / 1500, 1);
   for (std::size_t t = random() % step; t < mesh.triangle_count(); t += step) {
     const std::uint32_t* k = &mesh.indices[3 * t];
@@ -143,7 +143,7 @@ TEST(Pixels, AreNeverExceeded) {
       }
       EXPECT_LE(plan->pixels(), 2 * (1 + 1e-6));
       if (plan->capacity().triangles > 300'000) continue;
-      const Found found = found_over_bound(set, *plan, mesh_of(set, *plan), view, random);
+      const PixelFound found = pixel_found_over_bound(set, *plan, mesh_of(set, *plan), view, random);
       EXPECT_LE(found.share, 1) << chosen.name << (view.orthographic ? ", orthographic" : "");
       most = std::max(most, found.share);
     }
@@ -228,7 +228,7 @@ TEST(Pixels, AFloorBelowTheEye) {
   EXPECT_LE(plan.pixels(), 0.5 * (1 + 1e-6));
   EXPECT_LT(plan.capacity().triangles, 200'000u);
   Random random(2);
-  const Found found = found_over_bound(set, plan, mesh_of(set, plan), view, random);
+  const PixelFound found = pixel_found_over_bound(set, plan, mesh_of(set, plan), view, random);
   EXPECT_GT(found.seen, 100u);
   EXPECT_LE(found.share, 1);
 }

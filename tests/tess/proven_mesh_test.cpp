@@ -16,16 +16,16 @@
 namespace tessera::test {
 namespace {
 
-Tessellation plan_of(const PatchSet& set, double tolerance) {
+Tessellation proven_mesh_plan_of(const PatchSet& set, double tolerance) {
   return good(Tessellation::make(set, {.tolerance = tolerance}));
 }
 
-Vec3 vertex(const Mesh& mesh, std::size_t k) {
+Vec3 proven_mesh_vertex(const Mesh& mesh, std::size_t k) {
   return mesh.origin + Vec3{mesh.positions[3 * k], mesh.positions[3 * k + 1], mesh.positions[3 * k + 2]};
 }
 
 /// The largest distance found, over the patch's bound: of `samples` points of the patch over each triangle.
-double found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, int samples) {
+double proven_mesh_found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, int samples) {
   Random random(11);
   double most = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -41,14 +41,15 @@ double found_over_bound(const PatchSet& set, const Tessellation& plan, const Mes
         return parameter(0, c) + a * (parameter(1, c) - parameter(0, c)) + b * (parameter(2, c) - parameter(0, c));
       };
       const Vec3 p = de_casteljau(patch, mixed(0), mixed(1));
-      const double distance = distance_to_triangle(p, vertex(mesh, k[0]), vertex(mesh, k[1]), vertex(mesh, k[2]));
+      const double distance = distance_to_triangle(p, proven_mesh_vertex(mesh, k[0]), proven_mesh_vertex(mesh, k[1]),
+                                                   proven_mesh_vertex(mesh, k[2]));
       most = std::max(most, distance / double(plan.bounds()[mesh.patches[t]]));
     }
   }
   return most;
 }
 
-std::vector<BezierPatch> turned(std::vector<BezierPatch> patches, std::uint64_t seed) {
+std::vector<BezierPatch> proven_mesh_turned(std::vector<BezierPatch> patches, std::uint64_t seed) {
   Random random(seed);
   for (BezierPatch& patch : patches) patch = reoriented(patch, static_cast<int>(random() % 8));
   return patches;
@@ -58,11 +59,11 @@ TEST(ProvenMesh, ClosedBodiesStayClosedAtEveryTolerance) {
   for (const auto& body :
        {closed_body(), sphere(), placed(closed_body(), 1e-6, {}), placed(sphere(), 1e5, {3e5, -1e5, 7e4})})
     for (int seed = 0; seed < 3; ++seed) {
-      const PatchSet set = set_of(turned(body, static_cast<std::uint64_t>(seed)));
+      const PatchSet set = set_of(proven_mesh_turned(body, static_cast<std::uint64_t>(seed)));
       double largest = 0;
       for (const double relative : {0.5, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5}) {
         const double tolerance = relative * set.box().diagonal();
-        const Tessellation plan = plan_of(set, tolerance);
+        const Tessellation plan = proven_mesh_plan_of(set, tolerance);
         EXPECT_LE(plan.bound(), tolerance * (1 + 1e-6));
         EXPECT_EQ(plan.bound(), *std::max_element(plan.bounds().begin(), plan.bounds().end()));
         const Mesh mesh = mesh_of(set, plan);
@@ -72,7 +73,7 @@ TEST(ProvenMesh, ClosedBodiesStayClosedAtEveryTolerance) {
         EXPECT_EQ(report.degenerate_triangles, 0u) << relative;
         EXPECT_EQ(report.non_finite_vertices, 0u);
         EXPECT_EQ(2 * report.distinct_positions, report.triangles + 4);
-        if (relative >= 1e-3) largest = std::max(largest, found_over_bound(set, plan, mesh, 8));
+        if (relative >= 1e-3) largest = std::max(largest, proven_mesh_found_over_bound(set, plan, mesh, 8));
       }
       EXPECT_LE(largest, 1);
       EXPECT_GE(largest, 0.2);
@@ -87,16 +88,16 @@ TEST(ProvenMesh, RatesThatDifferMeetWithoutACrack) {
     for (Vec3& p : points) p.z *= std::exp(p.x - 5);
     patches.push_back(polynomial(3, 3, points));
   }
-  const PatchSet set = set_of(turned(patches, 3));
+  const PatchSet set = set_of(proven_mesh_turned(patches, 3));
   for (const double tolerance : {0.3, 0.05, 0.01, 1e-3, 1e-4}) {
-    const Tessellation plan = plan_of(set, tolerance);
+    const Tessellation plan = proven_mesh_plan_of(set, tolerance);
     const Mesh mesh = mesh_of(set, plan);
     const MeshReport report = good(check(mesh));
     EXPECT_EQ(report.degenerate_triangles, 0u);
     EXPECT_EQ(report.inconsistent_edges > 0, true);  // the patches are turned
     // A disc: vertices - edges + triangles = 1, and 3 triangles = 2 edges - open edges.
     EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2) << tolerance;
-    EXPECT_LE(found_over_bound(set, plan, mesh, 6), 1);
+    EXPECT_LE(proven_mesh_found_over_bound(set, plan, mesh, 6), 1);
   }
 }
 
@@ -104,21 +105,21 @@ TEST(ProvenMesh, RandomSetsKeepTheirBounds) {
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const PatchSet set = set_of(mixed_patches(seed, 30));
     for (const double tolerance : {0.3, 0.03}) {
-      const Tessellation plan = plan_of(set, tolerance);
+      const Tessellation plan = proven_mesh_plan_of(set, tolerance);
       const Mesh mesh = mesh_of(set, plan);
       EXPECT_EQ(good(check(mesh)).degenerate_triangles, 0u);
-      EXPECT_LE(found_over_bound(set, plan, mesh, 5), 1);
+      EXPECT_LE(proven_mesh_found_over_bound(set, plan, mesh, 5), 1);
     }
   }
 }
 
 TEST(ProvenMesh, TheSameBytesForAnyNumberOfThreads) {
   const PatchSet set = set_of(mixed_patches(4, 300));
-  const Tessellation plan = plan_of(set, 0.05);
+  const Tessellation plan = proven_mesh_plan_of(set, 0.05);
   Mesh first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-    const Mesh mesh = mesh_of(set, plan_of(set, 0.05));
+    const Mesh mesh = mesh_of(set, proven_mesh_plan_of(set, 0.05));
     if (threads == 1) first = mesh;
     EXPECT_EQ(mesh.positions, first.positions);
     EXPECT_EQ(mesh.normals, first.normals);
@@ -150,7 +151,7 @@ TEST(ProvenMesh, ARelativeToleranceIsOfTheSize) {
 
 TEST(ProvenMesh, RunsAgainAfterAnEdit) {
   PatchSet set = set_of(closed_body());
-  const Tessellation plan = plan_of(set, 0.01);
+  const Tessellation plan = proven_mesh_plan_of(set, 0.01);
   const Mesh before = mesh_of(set, plan);
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     std::vector<Vec3> points(set.patch(k).points().begin(), set.patch(k).points().end());
@@ -193,7 +194,7 @@ TEST(ProvenMesh, RefusesWhatItCannotKeep) {
 
 TEST(ProvenMesh, WritesNothingIntoShortViews) {
   const PatchSet set = set_of(closed_body());
-  const Tessellation plan = plan_of(set, 0.05);
+  const Tessellation plan = proven_mesh_plan_of(set, 0.05);
   Mesh mesh = good(plan.allocate());
   MeshViews views = mesh.views();
   views.indices = views.indices.first(views.indices.size() - 1);

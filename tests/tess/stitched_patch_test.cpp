@@ -14,18 +14,18 @@
 namespace tessera::test {
 namespace {
 
-struct Place {
+struct StitchedPatchPlace {
   double u, v;
 };
 
-std::vector<Place> places(const Division& division) {
-  std::vector<Place> at;
+std::vector<StitchedPatchPlace> places(const Division& division) {
+  std::vector<StitchedPatchPlace> at;
   for_parameters(division, [&](double u, double v) { at.push_back({u, v}); });
   return at;
 }
 
 struct Corners {
-  Place a, b, c;
+  StitchedPatchPlace a, b, c;
   double twice_area() const { return (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v); }
   double low_u() const { return std::min({a.u, b.u, c.u}); }
   double high_u() const { return std::max({a.u, b.u, c.u}); }
@@ -62,7 +62,7 @@ double longest(Segments asked, double low, double high) {
 
 /// Checks all promises of the header for a patch without collapsed borders.
 void expect_triangulation(const Division& division, PatchSegments asked) {
-  const std::vector<Place> at = places(division);
+  const std::vector<StitchedPatchPlace> at = places(division);
   ASSERT_EQ(at.size(), division.vertex_count());
   std::vector<std::uint32_t> indices(3 * division.triangle_count() + 1, 77777);
   ASSERT_EQ(division.write_triangles(0, indices.data()), indices.data() + 3 * division.triangle_count());
@@ -189,11 +189,11 @@ TEST(StitchedPatch, NoTriangleStandsOnACollapsedBorder) {
       PatchShape shape{3, 3, {}, false};
       shape.collapsed.add(edge_of(side));
       const Division division = Division::of(shape, asked, {asked.u + 2, asked.v, asked.u, asked.v + 2});
-      const std::vector<Place> at = places(division);
+      const std::vector<StitchedPatchPlace> at = places(division);
       std::vector<std::uint32_t> indices(3 * division.triangle_count());
       ASSERT_EQ(division.write_triangles(0, indices.data()), indices.data() + indices.size());
       const auto on_side = [&](std::uint32_t k) {
-        const Place p = at[k];
+        const StitchedPatchPlace p = at[k];
         return side == Side::v0 ? p.v == 0 : side == Side::v1 ? p.v == 1 : side == Side::u0 ? p.u == 0 : p.u == 1;
       };
       const Division whole = Division::of({3, 3, {}, false}, asked, division.border);

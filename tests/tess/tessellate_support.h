@@ -1,6 +1,7 @@
 #pragma once
 // Short ways to sets and meshes that must be good.
 
+#include "support/grids.h"
 #include "support/random_patches.h"
 #include "tessera/tessellation.h"
 
@@ -15,8 +16,6 @@ T good(Result<T> result) {
   }
   return *std::move(result);
 }
-
-inline PatchSet set_of(const std::vector<BezierPatch>& patches) { return good(PatchSet::make(patches)); }
 
 inline Mesh mesh_of(const PatchSet& set, const Tessellation& plan) {
   Mesh mesh = good(plan.allocate());

@@ -49,16 +49,17 @@ inline ModelSurface hole_wall(double x, double y, double radius) {
 
 /// The faces of a plate of 4 x 3 x 1 with a round hole. `turn`: where the loops on top and bottom start.
 inline std::vector<ModelSurface> drilled_plate(double x = 1.7, double y = 1.4, double radius = 0.6, double turn = 0) {
-  return {
-      rectangle_face({0, 0, 1}, {4, 0, 0}, {0, 3, 0},
-                     {polygon({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}}), circle_loop(x, y, radius, true, turn)}),
-      rectangle_face({0, 0, 0}, {0, 3, 0}, {4, 0, 0},
-                     {polygon({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}}), circle_loop(y, x, radius, true, turn)}),
-      rectangle_face({0, 0, 0}, {4, 0, 0}, {0, 0, 1}),
-      rectangle_face({0, 3, 0}, {0, 0, 1}, {4, 0, 0}),
-      rectangle_face({0, 0, 0}, {0, 0, 1}, {0, 3, 0}),
-      rectangle_face({4, 0, 0}, {0, 3, 0}, {0, 0, 1}),
-      hole_wall(x, y, radius)};
+  return {rectangle_face(
+              {0, 0, 1}, {4, 0, 0}, {0, 3, 0},
+              {space_polygon({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}}), circle_loop(x, y, radius, true, turn)}),
+          rectangle_face(
+              {0, 0, 0}, {0, 3, 0}, {4, 0, 0},
+              {space_polygon({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}}), circle_loop(y, x, radius, true, turn)}),
+          rectangle_face({0, 0, 0}, {4, 0, 0}, {0, 0, 1}),
+          rectangle_face({0, 3, 0}, {0, 0, 1}, {4, 0, 0}),
+          rectangle_face({0, 0, 0}, {0, 0, 1}, {0, 3, 0}),
+          rectangle_face({4, 0, 0}, {0, 3, 0}, {0, 0, 1}),
+          hole_wall(x, y, radius)};
 }
 inline double drilled_volume(double radius = 0.6) { return 12 - std::numbers::pi * radius * radius; }
 

@@ -9,7 +9,7 @@ namespace {
 TrimLoop with_gap_on_side(const TrimLoop& loop, double gap) {
   TrimLoop moved = loop;
   const Vec3 start = loop.curves[1].points().front(), end = loop.curves[1].points().back();
-  moved.curves[1] = line(start + gap / length(end - start) * (end - start), end);
+  moved.curves[1] = space_line(start + gap / length(end - start) * (end - start), end);
   return moved;
 }
 
@@ -36,7 +36,7 @@ TEST(OpenEdges, GapsOnSidesAreNotCountedOnceTheyAreClosed) {
 
 /// Sides of two faces have the same bits, and loops keep the same part of them.
 TEST(OpenEdges, PartsOfSharedSidesAreCounted) {
-  const TrimLoop part = polygon({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}});
+  const TrimLoop part = space_polygon({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}});
   for (const double corner : {4.0, -4.0}) {
     const std::vector<ModelSurface> faces{rectangle_face({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {part}),
                                           rectangle_face({corner, 0, 0}, {4, 0, 0}, {0, 3, 0}, {part})};

@@ -13,7 +13,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double piece_chords_pi = std::numbers::pi;
 
 /// The arc of the unit circle from one angle to another, as a rational parabola.
 TrimPiece arc(double from, double to) {
@@ -42,17 +42,19 @@ Chords chords_of(const std::vector<TrimPiece>& pieces, double most) {
 
 TEST(PieceChords, OfAnArcAreAsFewAsItsSagittasAllow) {
   for (const int count : {1, 2, 4, 8, 16}) {
-    const double sagitta = 1 - std::cos(pi / 4 / count);
-    const Chords fine = chords_of({arc(0, pi / 2)}, sagitta * (1 + 1e-9));
+    const double sagitta = 1 - std::cos(piece_chords_pi / 4 / count);
+    const Chords fine = chords_of({arc(0, piece_chords_pi / 2)}, sagitta * (1 + 1e-9));
     EXPECT_EQ(fine.points.size(), static_cast<std::size_t>(count));
     EXPECT_NEAR(fine.sliver, sagitta, 1e-12);
-    EXPECT_EQ(chords_of({arc(0, pi / 2)}, sagitta * (1 - 1e-9)).points.size(), static_cast<std::size_t>(2 * count));
+    EXPECT_EQ(chords_of({arc(0, piece_chords_pi / 2)}, sagitta * (1 - 1e-9)).points.size(),
+              static_cast<std::size_t>(2 * count));
   }
 }
 
 TEST(PieceChords, SpanPiecesThatTurnBackALittle) {
   const auto around_top = [](double angle) {
-    return std::vector{arc(pi / 2 - angle, pi / 2), arc(pi / 2, pi / 2 + angle)};
+    return std::vector{arc(piece_chords_pi / 2 - angle, piece_chords_pi / 2),
+                       arc(piece_chords_pi / 2, piece_chords_pi / 2 + angle)};
   };
   EXPECT_EQ(chords_of(around_top(0.2), 0.1).points.size(), 1u);
   EXPECT_GE(chords_of(around_top(0.2), 0.1).sliver, 1 - std::cos(0.2));

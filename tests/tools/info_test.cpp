@@ -158,12 +158,12 @@ TEST_F(Info, LoopsThatCannotBeUsed) {
 }
 
 /// Every key of an object, as a.b.c; elements of arrays as a[].b.
-void collect(const json& value, const std::string& path, std::set<std::string>& keys) {
-  if (value.is_array() && !value.empty()) return collect(value[0], path + "[]", keys);
+void info_collect(const json& value, const std::string& path, std::set<std::string>& keys) {
+  if (value.is_array() && !value.empty()) return info_collect(value[0], path + "[]", keys);
   if (!value.is_object()) return;
   for (const auto& [key, child] : value.items()) {
     keys.insert(path.empty() ? key : path + "." + key);
-    if (path + key != "kinds") collect(child, path.empty() ? key : path + "." + key, keys);
+    if (path + key != "kinds") info_collect(child, path.empty() ? key : path + "." + key, keys);
   }
 }
 
@@ -192,7 +192,7 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
     Names command = words;
     command.push_back("--json");
     std::set<std::string> said;
-    collect(json::parse(output_of(command)), "", said);
+    info_collect(json::parse(output_of(command)), "", said);
     for (const std::string& key : said) EXPECT_TRUE(documented.count(key)) << name << " says " << key;
     for (const std::string& key : documented) {
       const bool in_empty = key.find("[].") != std::string::npos;  // of lists that are empty here

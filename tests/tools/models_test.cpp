@@ -27,9 +27,9 @@ std::vector<std::string> model_files() {
 
 class Models : public ToolTest, public testing::WithParamInterface<std::string> {};
 
-double number(const std::string& cell) { return std::stod(cell); }
+double models_number(const std::string& cell) { return std::stod(cell); }
 Vec3 vector(const std::vector<std::string>& row, std::size_t first) {
-  return {number(row[first]), number(row[first + 1]), number(row[first + 2])};
+  return {models_number(row[first]), models_number(row[first + 1]), models_number(row[first + 2])};
 }
 
 TEST_P(Models, IsEvaluatedAndMeshedWhole) {
@@ -38,7 +38,7 @@ TEST_P(Models, IsEvaluatedAndMeshedWhole) {
   const auto rows = cells_of(output_of({"eval", GetParam(), "--grid", "4x5", "--derivs", "2"}));
   EXPECT_EQ(rows.size(), 1 + 20 * facts["surfaces"].get<std::size_t>());
   for (std::size_t k = 1; k < rows.size(); ++k)
-    for (const std::string& cell : rows[k]) EXPECT_TRUE(std::isfinite(number(cell))) << "row " << k;
+    for (const std::string& cell : rows[k]) EXPECT_TRUE(std::isfinite(models_number(cell))) << "row " << k;
   output_of({"tessellate", GetParam(), "-o", "a.ply", "--grid", "6x5"});
   const json mesh = json::parse(output_of({"check", "a.ply", "--json"}));
   EXPECT_EQ(mesh["non_finite_vertices"], 0);
@@ -132,7 +132,7 @@ TEST_P(Models, HitsLieWhereEvaluationSaysThatTheyDo) {
   std::string places = "surface,u,v\n";
   for (std::size_t k = 1; k < hits.size(); ++k) {
     ASSERT_EQ(hits[k][1], "1") << "ray " << k;
-    EXPECT_LE(number(hits[k][2]), size + fit + 1e-9 * size) << "ray " << k;
+    EXPECT_LE(models_number(hits[k][2]), size + fit + 1e-9 * size) << "ray " << k;
     places += hits[k][3] + "," + hits[k][5] + "," + hits[k][6] + "\n";
   }
   folder_.file("places.csv", places);

@@ -14,7 +14,7 @@ namespace {
 
 using test::Quad;
 
-const CutLines& lines() {
+const CutLines& piece_side_lines() {
   static const CutLines all{{{-10, 10}, false, 0}, {{-10, 10}, false, 0}};
   return all;
 }
@@ -42,7 +42,7 @@ TEST(PieceSide, AgreesWithQuadrupleNumbersBeyondItsReach) {
   std::mt19937 random(1);
   int near = 0, decided = 0;
   for (int k = 0; k < 10; ++k) {
-    for (const TrimPiece& piece : test::pieces_of(test::random_loop(random), 0, lines()).pieces) {
+    for (const TrimPiece& piece : test::pieces_of(test::random_loop(random), 0, piece_side_lines()).pieces) {
       const test::QuadBezier quad = in_quad(piece.curve);
       const ParameterPoint most = reach(piece);
       for (int i = 0; i < 60; ++i) {

@@ -23,7 +23,7 @@ PlaneBezier random_bezier(std::mt19937& random) {
   return curve;
 }
 
-QuadBezier in_quad(const PlaneBezier& curve) {
+QuadBezier plane_bezier_in_quad(const PlaneBezier& curve) {
   QuadBezier quad;
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const Quad w = curve.weight(i);
@@ -32,7 +32,7 @@ QuadBezier in_quad(const PlaneBezier& curve) {
   return quad;
 }
 
-double error(Quad a, Quad b) { return static_cast<double>(a > b ? a - b : b - a); }
+double plane_bezier_error(Quad a, Quad b) { return static_cast<double>(a > b ? a - b : b - a); }
 
 TEST(PlaneBezier, PrecisePointsAgreeWithQuadrupleNumbers) {
   std::mt19937 random(1);
@@ -41,9 +41,9 @@ TEST(PlaneBezier, PrecisePointsAgreeWithQuadrupleNumbers) {
     const PlaneBezier curve = random_bezier(random);
     const double t = k % 10 == 0 ? k % 20 / 10 : uniform(random);
     const PrecisePoint p = precise_point(curve, t);
-    const auto expected = in_quad(curve).at(t);
-    ASSERT_LE(error(Quad(p.u.high) + Quad(p.u.low), expected.u), 1e-29);
-    ASSERT_LE(error(Quad(p.v.high) + Quad(p.v.low), expected.v), 1e-29);
+    const auto expected = plane_bezier_in_quad(curve).at(t);
+    ASSERT_LE(plane_bezier_error(Quad(p.u.high) + Quad(p.u.low), expected.u), 1e-29);
+    ASSERT_LE(plane_bezier_error(Quad(p.v.high) + Quad(p.v.low), expected.v), 1e-29);
   }
 }
 
@@ -55,13 +55,13 @@ TEST(PlaneBezier, RelativePointsKeepTheirBound) {
     const PlaneBezier curve = random_bezier(random);
     const double t = uniform(random);
     const ParameterPoint q = k % 2 == 0 ? precise_point(curve, t).rounded() : ParameterPoint{10, 0};
-    const auto expected = in_quad(curve).at(t);
+    const auto expected = plane_bezier_in_quad(curve).at(t);
     const ParameterPoint p = relative_point(curve, q, t);
     ParameterPoint farthest;
     for (const ParameterPoint& point : curve.points) farthest = larger(farthest, distance(point, q));
     const double bound = plane_error(curve.degree());
-    worst = std::max(worst, error(p.u, expected.u - q.u) / (bound * farthest.u));
-    worst = std::max(worst, error(p.v, expected.v - q.v) / (bound * farthest.v));
+    worst = std::max(worst, plane_bezier_error(p.u, expected.u - q.u) / (bound * farthest.u));
+    worst = std::max(worst, plane_bezier_error(p.v, expected.v - q.v) / (bound * farthest.v));
   }
   EXPECT_LE(worst, 1);
   EXPECT_GE(worst, 0.02) << "the bound is far from what happens";
@@ -76,11 +76,11 @@ TEST(PlaneBezier, PartsAreTheSameCurve) {
     if (k % 3 == 0) t1 = std::min(1.0, t0 + 1e-9);
     if (t0 > t1) std::swap(t0, t1);
     const PlaneBezier part = tessera::part(curve, t0, t1);
-    const QuadBezier whole = in_quad(curve), expected = in_quad(part);
+    const QuadBezier whole = plane_bezier_in_quad(curve), expected = plane_bezier_in_quad(part);
     for (const double s : {0.0, 0.1, 0.5, 0.77, 1.0}) {
       const auto a = expected.at(s), b = whole.at(t0 + Quad(s) * (Quad(t1) - t0));
-      ASSERT_LE(error(a.u, b.u), 12 * 0x1p-52);  // one rounding of coordinates up to 11
-      ASSERT_LE(error(a.v, b.v), 12 * 0x1p-52);  // and of weights
+      ASSERT_LE(plane_bezier_error(a.u, b.u), 12 * 0x1p-52);  // one rounding of coordinates up to 11
+      ASSERT_LE(plane_bezier_error(a.v, b.v), 12 * 0x1p-52);  // and of weights
     }
   }
 }

@@ -64,7 +64,7 @@ std::vector<TrimLoop> random_loops(std::mt19937& random) {
 }
 
 /// A point anywhere, next to a piece, at the height of an end, or at an end.
-ParameterPoint random_point(std::mt19937& random, const TrimRegion::Impl& region) {
+ParameterPoint region_cells_random_point(std::mt19937& random, const TrimRegion::Impl& region) {
   std::uniform_real_distribution<double> uniform(0, 1);
   const Domain& d = region.domain;
   ParameterPoint q{d.u_at(uniform(random)), d.v_at(uniform(random))};
@@ -104,7 +104,7 @@ TEST(RegionCells, TellTheSidesOfBoxes) {
     const TrimRegion region = value_of(TrimRegion::make(loops, domain));
     const TrimRegion::Impl& impl = impl_of(region);
     for (int i = 0; i < 1000; ++i) {
-      const ParameterPoint q = random_point(random, impl);
+      const ParameterPoint q = region_cells_random_point(random, impl);
       if (!domain.contains(q.u, q.v)) continue;
       const Domain box = random_box(random, domain, q);
       ++checked;
@@ -135,7 +135,7 @@ TEST(RegionCells, AnswerAsAllPiecesTogetherDo) {
     if (k % 6 == 5) options.snap = 1e-3;
     const TrimRegion region = value_of(TrimRegion::make(loops, breaks_u, breaks_v, options));
     for (int i = 0; i < 1000; ++i) {
-      const ParameterPoint q = random_point(random, impl_of(region));
+      const ParameterPoint q = region_cells_random_point(random, impl_of(region));
       if (!domain.contains(q.u, q.v)) continue;
       const TrimSide expected = by_all_pieces(impl_of(region), q.u, q.v);
       ASSERT_EQ(region.locate(q.u, q.v), expected) << k << ": " << q.u << ' ' << q.v;

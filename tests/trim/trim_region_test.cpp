@@ -18,9 +18,9 @@ namespace {
 using test::Quad;
 using test::value_of;
 
-constexpr Domain unit{0, 1, 0, 1};
+constexpr Domain trim_region_unit{0, 1, 0, 1};
 
-TrimSide side(bool inside) { return inside ? TrimSide::inside : TrimSide::outside; }
+TrimSide trim_region_side(bool inside) { return inside ? TrimSide::inside : TrimSide::outside; }
 
 /// A point at `distance` times a random number from the loops, which are in quadruple numbers.
 ParameterPoint point_near(std::mt19937& random, std::span<const test::QuadBezier> curves, double distance) {
@@ -40,7 +40,7 @@ int compare(const TrimRegion& region, std::span<const TrimLoop> loops, std::mt19
     for (int k = 0; k < points; ++k) {
       const ParameterPoint q = point_near(random, curves, distance);
       const TrimSide found = region.locate(q.u, q.v);
-      if (!unit.contains(q.u, q.v)) {
+      if (!trim_region_unit.contains(q.u, q.v)) {
         EXPECT_EQ(found, TrimSide::outside);
         continue;
       }
@@ -55,7 +55,7 @@ int compare(const TrimRegion& region, std::span<const TrimLoop> loops, std::mt19
       const std::optional<bool> expected = test::encloses(curves, q.u, q.v);
       if (!expected)
         ADD_FAILURE() << "a point on a loop is told to be beside it";
-      else if (found != side(*expected))
+      else if (found != trim_region_side(*expected))
         ADD_FAILURE() << "(" << q.u << ", " << q.v << ") at " << distance;
       if (testing::Test::HasFailure()) return border;
     }
@@ -72,7 +72,7 @@ TEST(TrimRegion, CirclesInClosedForm) {
     circles.push_back({0.1 + 0.2 * (k % 5), 0.13 + 0.25 * (k / 5), 0.06 + 0.03 * uniform(random)});
     loops.push_back(test::circle({circles[k][0], circles[k][1]}, circles[k][2], true));
   }
-  const TrimRegion region = value_of(TrimRegion::make(loops, unit));
+  const TrimRegion region = value_of(TrimRegion::make(loops, trim_region_unit));
   EXPECT_TRUE(region.remarks().empty());
   EXPECT_LE(region.band().u, 1e-15);
   for (double distance = 1; distance > 0.5e-15; distance *= 0.1) {
@@ -80,7 +80,7 @@ TEST(TrimRegion, CirclesInClosedForm) {
       const auto& [u, v, radius] = circles[static_cast<std::size_t>(k) % 20];
       const double angle = std::numbers::pi * uniform(random), r = radius + distance * uniform(random);
       const double x = u + r * std::cos(angle), y = v + r * std::sin(angle);
-      if (!unit.contains(x, y)) continue;
+      if (!trim_region_unit.contains(x, y)) continue;
       const TrimSide found = region.locate(x, y);
       bool inside = true, near = false;
       for (const auto& [cu, cv, cr] : circles) {
@@ -89,7 +89,7 @@ TEST(TrimRegion, CirclesInClosedForm) {
         near = near || std::abs(static_cast<double>(square - Quad(cr) * cr)) < 2 * cr * 1e-15;
       }
       if (near) continue;  // the rounded weights make a circle that is 1e-16 off
-      ASSERT_EQ(found, side(inside)) << distance;
+      ASSERT_EQ(found, trim_region_side(inside)) << distance;
     }
   }
 }
@@ -109,7 +109,7 @@ TEST(TrimRegion, PolygonsAreExactToTheLastBit) {
       ParameterPoint q{whole(random) / 64.0, whole(random) / 64.0};
       if (i % 3 == 1) q = corners[static_cast<std::size_t>(i) % corners.size()];
       if (i % 2 == 1 && q.u > 0) q.u = std::nextafter(q.u, random() % 2 == 0 ? 2.0 : -2.0);
-      if (!unit.contains(q.u, q.v)) continue;
+      if (!trim_region_unit.contains(q.u, q.v)) continue;
       bool inside = false, on = false;
       for (std::size_t c = 0; c < corners.size(); ++c) {
         const ParameterPoint &a = corners[c], &b = corners[(c + 1) % corners.size()];
@@ -118,7 +118,7 @@ TEST(TrimRegion, PolygonsAreExactToTheLastBit) {
                     q.v <= std::max(a.v, b.v));
         if ((a.v > q.v) != (b.v > q.v)) inside ^= (d > 0) == (b.v > a.v);
       }
-      ASSERT_EQ(region.locate(q.u, q.v), on ? TrimSide::border : side(inside)) << k << ' ' << i;
+      ASSERT_EQ(region.locate(q.u, q.v), on ? TrimSide::border : trim_region_side(inside)) << k << ' ' << i;
     }
   }
 }
@@ -143,7 +143,7 @@ TEST(TrimRegion, OrderOrientationAndSplittingChangeNothing) {
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int k = 0; k < 20; ++k) {
     std::vector<TrimLoop> loops{test::random_loop(random), test::random_loop(random), test::circle({0.5, 0.5}, 0.3)};
-    const TrimRegion region = value_of(TrimRegion::make(loops, unit));
+    const TrimRegion region = value_of(TrimRegion::make(loops, trim_region_unit));
     std::vector<TrimLoop> changed;
     for (const TrimLoop& loop : loops) {
       const Curve& curve = loop.curves[0];
@@ -158,7 +158,7 @@ TEST(TrimRegion, OrderOrientationAndSplittingChangeNothing) {
       };
       changed.insert(changed.begin(), {{part({middle, whole.to}), part({whole.from, middle})}, loop.hole});
     }
-    const TrimRegion other = value_of(TrimRegion::make(changed, unit));
+    const TrimRegion other = value_of(TrimRegion::make(changed, trim_region_unit));
     for (int i = 0; i < 20000; ++i) {
       const double u = uniform(random), v = uniform(random);
       ASSERT_EQ(region.locate(u, v), other.locate(u, v)) << u << ' ' << v;
@@ -169,7 +169,7 @@ TEST(TrimRegion, OrderOrientationAndSplittingChangeNothing) {
 TEST(TrimRegion, WhatIsInsideWithoutAnOuterLoop) {
   const TrimLoop hole = test::circle({0.5, 0.5}, 0.25, true), disc = test::circle({0.5, 0.5}, 0.25);
   const auto at = [](std::vector<TrimLoop> loops, double u) {
-    return value_of(TrimRegion::make(loops, unit)).locate(u, 0.5);
+    return value_of(TrimRegion::make(loops, trim_region_unit)).locate(u, 0.5);
   };
   EXPECT_EQ(at({}, 0.5), TrimSide::inside);
   EXPECT_EQ(at({}, 0), TrimSide::inside);
@@ -195,7 +195,7 @@ TEST(TrimRegion, AHundredHolesInACell) {
     std::vector<TrimLoop> loops{test::rectangle(0, 1, 0, 1)};
     const auto place = [&](int k) { return ParameterPoint{0.3 + size * (k % 10), 0.7 + size * (k / 10)}; };
     for (int k = 0; k < 100; ++k) loops.push_back(test::circle(place(k), 0.4 * size));
-    const TrimRegion region = value_of(TrimRegion::make(loops, unit));
+    const TrimRegion region = value_of(TrimRegion::make(loops, trim_region_unit));
     for (int i = 0; i < 100000; ++i) {
       const double u = 0.3 + size * (10 * uniform(random) - 0.5), v = 0.7 + size * (10 * uniform(random) - 0.5);
       bool inside = true;
@@ -206,7 +206,7 @@ TEST(TrimRegion, AHundredHolesInACell) {
         nearest = std::min(nearest, std::abs(r));
       }
       if (nearest <= 1e-15) continue;
-      ASSERT_EQ(region.locate(u, v), side(inside)) << size << ' ' << u << ' ' << v;
+      ASSERT_EQ(region.locate(u, v), trim_region_side(inside)) << size << ' ' << u << ' ' << v;
     }
   }
 }
@@ -216,7 +216,7 @@ TEST(TrimRegion, LoopsAtADistanceOf1e12) {
   std::mt19937 random(6);
   const std::vector<TrimLoop> loops{test::circle({0.5, 0.5}, 0.3), test::circle({0.5, 0.5}, 0.3 + gap),
                                     test::rectangle(0.1, 0.2, 0.1, 0.2), test::rectangle(0.2 + gap, 0.3, 0.1, 0.2)};
-  const TrimRegion region = value_of(TrimRegion::make(loops, unit));
+  const TrimRegion region = value_of(TrimRegion::make(loops, trim_region_unit));
   std::uniform_real_distribution<double> uniform(0, 1);
   for (int k = 0; k < 20000; ++k) {
     const double angle = 2 * std::numbers::pi * uniform(random);
@@ -253,7 +253,7 @@ TEST(TrimRegion, ChordsWithTheirMiddlesAtOneU) {
   for (int k = 0; k <= needles; ++k) corners.push_back({k % 2 == 0 ? 0.499 : 0.501, 0.1 + 0.8 * k / needles});
   corners.push_back({0.9, 0.9});
   corners.push_back({0.9, 0.1});
-  const TrimRegion region = value_of(TrimRegion::make(std::vector{test::polyline(corners)}, unit));
+  const TrimRegion region = value_of(TrimRegion::make(std::vector{test::polyline(corners)}, trim_region_unit));
   EXPECT_TRUE(region.remarks().empty());
   EXPECT_EQ(region.locate(0.8, 0.5), TrimSide::inside);
   EXPECT_EQ(region.locate(0.2, 0.5), TrimSide::outside);
@@ -267,7 +267,7 @@ TEST(TrimRegion, BadLoopsAreRepairedAndTold) {
   const TrimLoop closed = test::polygon({{0.1, 0.1}, {0.6, 0.1}, {0.3, 0.9}});
   const std::vector<std::pair<TrimLoop, TrimLoop>> cases{{bow, bow}, {outside, clipped}, {open, closed}};
   for (const auto& [loop, repaired] : cases) {
-    const TrimRegion region = value_of(TrimRegion::make(std::span(&loop, 1), unit));
+    const TrimRegion region = value_of(TrimRegion::make(std::span(&loop, 1), trim_region_unit));
     EXPECT_EQ(region.remarks().size(), &loop == &cases[0].first ? 0u : 1u);
     compare(region, std::span(&repaired, 1), random, 150);
   }
@@ -281,7 +281,7 @@ TEST(TrimRegion, PatchesAreWholeCutOrLeftOut) {
   for (std::size_t a = 0; a < 5; ++a)
     for (std::size_t b = 0; b < 5; ++b) {
       const bool rim = a == 0 || a == 4 || b == 0 || b == 4, middle = a == 2 && b == 2;
-      EXPECT_EQ(region.patch(a, b), middle ? TrimSide::border : side(!rim)) << a << ' ' << b;
+      EXPECT_EQ(region.patch(a, b), middle ? TrimSide::border : trim_region_side(!rim)) << a << ' ' << b;
     }
   EXPECT_TRUE(value_of(TrimRegion::make(std::vector{test::rectangle(0, 1, 0, 1)}, breaks, breaks)).is_whole());
   EXPECT_TRUE(value_of(TrimRegion::make({}, breaks, breaks)).is_whole());
@@ -290,7 +290,7 @@ TEST(TrimRegion, PatchesAreWholeCutOrLeftOut) {
 TEST(TrimRegion, LocatesManyPointsAtOnce) {
   std::mt19937 random(10);
   std::uniform_real_distribution<double> uniform(-0.1, 1.1);
-  const TrimRegion region = value_of(TrimRegion::make(std::vector{test::random_loop(random)}, unit));
+  const TrimRegion region = value_of(TrimRegion::make(std::vector{test::random_loop(random)}, trim_region_unit));
   std::vector<double> u(1000), v(1000);
   std::vector<TrimSide> sides(1000);
   for (double& x : u) x = uniform(random);
