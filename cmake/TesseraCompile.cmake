@@ -12,7 +12,7 @@ endif()
 # Carried by every target of this project, and by none of its users.
 add_library(tessera_compile INTERFACE)
 target_compile_options(tessera_compile INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:TESSERA_MAY_SHADOW>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Wold-style-cast -Wnon-virtual-dtor
   # gcc 12 warns wrongly of string + string (its bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Results must not depend on what the compiler fuses, and NaN and infinity keep their meaning.
@@ -26,26 +26,41 @@ if(TESSERA_SANITIZE)
   target_link_options(tessera_compile INTERFACE -fsanitize=${TESSERA_SANITIZE})
 endif()
 
-# tessera_floor(NAME SOURCES... [BALANCED sources...] [SIZE_OPTIMIZED sources...] BELOW floors...)
+# tessera_floor(NAME [LEVEL level] SOURCES files... BELOW floors...)
 #
-# Makes the target tessera_NAME of sources in engine/src/NAME. They include the public headers, their own folder and the
+# Makes the target tessera_NAME of files in engine/src/NAME. They include the public headers, their own folder and the
 # floors below, all as <folder>/<file>; tests/house checks every #include.
 #
-# Optimisation in Release: SOURCES at -O3; BALANCED sources, which hand batches to kernels, at -O2; SIZE_OPTIMIZED
-# sources, which run once per surface, at -Os. Move a source to a smaller level only if that does not change the
-# instructions that tools/perf count reports.
+# - LEVEL: how Release optimises the floor, -O3 unless told. Floors that hand batches to kernels take -O2, those that run
+#   once per surface or file -Os.
+# - With CMAKE_UNITY_BUILD, each folder is compiled as one unit, because parsing the same headers takes most of the time.
+#   So names in anonymous namespaces differ within a folder.
 function(tessera_floor name)
   get_filename_component(engine ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../engine ABSOLUTE)
-  cmake_parse_arguments(FLOOR "" "" "SOURCES;BALANCED;SIZE_OPTIMIZED;BELOW" ${ARGN})
-  add_library(tessera_${name} OBJECT ${FLOOR_SOURCES} ${FLOOR_BALANCED} ${FLOOR_SIZE_OPTIMIZED})
-  target_compile_options(tessera_${name} PRIVATE $<$<CONFIG:Release>:-ffunction-sections>)
-  set_source_files_properties(${FLOOR_BALANCED} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
-  set_source_files_properties(${FLOOR_SIZE_OPTIMIZED} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-Os>)
+  cmake_parse_arguments(FLOOR "" "LEVEL" "SOURCES;BELOW" ${ARGN})
+  add_library(tessera_${name} OBJECT ${FLOOR_SOURCES})
+  target_compile_options(tessera_${name} PRIVATE $<$<CONFIG:Release>:-ffunction-sections> $<$<CONFIG:Release>:${FLOOR_LEVEL}>)
   target_include_directories(tessera_${name} PRIVATE ${engine}/include ${engine}/src)
   target_link_libraries(tessera_${name} PRIVATE tessera_compile)
   # What a public header declares is exported (it says so), and nothing else.
   set_target_properties(tessera_${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  tessera_unit_per_folder(tessera_${name})
   foreach(below IN LISTS FLOOR_BELOW)
     add_dependencies(tessera_${name} tessera_${below})
   endforeach()
+endfunction()
+
+# tessera_unit_per_folder(TARGET): with CMAKE_UNITY_BUILD, the files of a folder are compiled as one unit.
+function(tessera_unit_per_folder target)
+  get_target_property(files ${target} SOURCES)
+  foreach(file IN LISTS files)
+    get_filename_component(folder ${file} DIRECTORY)
+    get_filename_component(folder ${folder} NAME)
+    set_source_files_properties(${file} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  if(CMAKE_UNITY_BUILD)
+    # gcc takes the files of a unit for headers, in which classes must not hold what anonymous namespaces define.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
 endfunction()

@@ -33,6 +33,7 @@ macro(tessera_isa name units)
   if(TARGET xsimd)
     target_link_libraries(tessera_kernel_${name} PRIVATE xsimd)
   endif()
+  set_target_properties(tessera_kernel_${name} PROPERTIES UNITY_BUILD OFF)
   list(APPEND tessera_isa_objects $<TARGET_OBJECTS:tessera_kernel_${name}>)
 endmacro()
 

@@ -13,7 +13,7 @@ fault, and fails if there is one.
   --tidy           run clang-tidy only, about a minute for ten files
   --fix            format the files instead of checking them
   --quick          tidy without the path-sensitive checks (clang-analyzer-*), which take most of the time
-  --build FOLDER   the build whose compile_commands.json says how files are compiled (build/dev)
+  --build FOLDER   the build whose compile_commands.json says how files are compiled (build/edit)
 TEXT
 }
 
@@ -22,7 +22,7 @@ fail() {
   exit 2
 }
 
-format='' tidy='' fix='' quick='' build=build/dev
+format='' tidy='' fix='' quick='' build=build/edit
 files=()
 while (($#)); do
   case $1 in
@@ -80,7 +80,7 @@ if [[ $format ]]; then
 fi
 if [[ $tidy ]]; then
   command -v clang-tidy >/dev/null || fail "there is no clang-tidy here"
-  [[ -f $build/compile_commands.json ]] || fail "$build has no compile_commands.json: configure it first (cmake --preset dev)"
+  [[ -f $build/compile_commands.json ]] || fail "$build has no compile_commands.json: configure it first (cmake --preset edit)"
   # Clang does not know gcc's options of code generation.
   commands=$(mktemp -d)
   trap 'rm -rf "$commands"' EXIT

@@ -214,8 +214,12 @@ if(WAY STREQUAL "package")
     foreach(guide README engine/docs/tessellation-backend engine/docs/ray-hits engine/docs/renderer
         engine/docs/tracking-speed engine/docs/c)
       get_filename_component(folder ${guide} NAME)
+      set(shell)
+      if(guide STREQUAL "README")
+        set(shell --shell ${BUILD})
+      endif()
       run(${PYTHON} ${SOURCE}/tests/house/guides.py ${SOURCE}/${guide}.md ${WORK}/${folder} ${prefix} ${CMAKE_COMMAND}
-        ${GENERATOR} ${COMPILER})
+        ${GENERATOR} ${COMPILER} ${shell})
     endforeach()
   else()
     message(STATUS "Python is not there: the guides are not followed")
@@ -223,7 +227,8 @@ if(WAY STREQUAL "package")
 elseif(WAY STREQUAL "subdirectory")
   # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest: most of the
   # time is that of the kernels, which it optimises no more than necessary.
-  set(options -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE= -D TESSERA_INSTALL=ON -D TESSERA_KERNEL_LEVEL=-O1)
+  set(options -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE= -D TESSERA_INSTALL=ON -D TESSERA_KERNEL_LEVEL=-O1
+    -D CMAKE_UNITY_BUILD=ON)
   set(TARGETS ${programs})
   build_consumer(subdirectory ${options} -D BUILD_SHARED_LIBS=ON)
   run_programs(subdirectory shared)
