@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a mesh and a picture of the Utah teapot from a fresh clone: installs missing packages, builds, and runs.
+# Makes meshes and pictures of the Utah teapot and of a CAD part from a fresh clone: installs, builds, and runs.
 set -euo pipefail
 
 if (($#)); then
@@ -7,8 +7,9 @@ if (($#)); then
     cat <<'TEXT'
 tools/demo.sh
 
-Installs missing packages (tools/setup.sh --for demo), builds the command line in build/demo, prints a summary of the
-Utah teapot and writes out/teapot.ply and out/teapot.png. Prints the time of each step, and how long a first run takes.
+Installs missing packages (tools/setup.sh --for cad), builds the command line and the reader of CAD files in build/demo,
+and writes meshes and pictures of the Utah teapot and of a bearing block from a STEP file into out/. Prints the time of
+each step, and how long a first run takes.
 TEXT
     exit 0
   fi
@@ -17,9 +18,6 @@ TEXT
 fi
 cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
-model=tools/models/teapot.bpt
-mesh=out/teapot.ply
-picture=out/teapot.png
 tessera=build/demo/tools/tessera
 names=()
 times=()
@@ -46,21 +44,27 @@ build() {
   NINJA_STATUS='[%f/%t, %e s] ' cmake --build --preset demo
 }
 
-write_mesh() {
-  "$tessera" tessellate "$model" -o "$mesh" --grid 16x16
-  "$tessera" check "$mesh"
+# Each line states how far the mesh lies from the surfaces at most, and whether it is closed.
+write_meshes() {
+  "$tessera" tessellate tools/models/teapot.bpt -o out/teapot.ply
+  "$tessera" tessellate tools/models/bearing_block.step -o out/bearing_block.glb
 }
 
-echo "demo: the first run compiles the library, 10 to 30 minutes on two cores; later runs take seconds."
-step "set-up" tools/setup.sh --for demo
+draw_pictures() {
+  "$tessera" raycast tools/models/teapot.bpt -o out/teapot.png --size 1280x800
+  "$tessera" raycast tools/models/bearing_block.step -o out/bearing_block.png --size 1280x800
+}
+
+echo "demo: the first run compiles the library, MINUTES on two cores; later runs take seconds."
+step "set-up" tools/setup.sh --for cad
 step "build" build
 mkdir -p out
-step "summary" "$tessera" info "$model"
-step "mesh" write_mesh
-step "picture" "$tessera" raycast "$model" -o "$picture" --size 1280x800
+step "summary" "$tessera" info tools/models/bearing_block.step
+step "meshes" write_meshes
+step "pictures" draw_pictures
 
-printf '\nThe teapot as a mesh:    %s\n' "$PWD/$mesh"
-printf 'The teapot as a picture: %s\n\n' "$PWD/$picture"
+printf '\nMeshes and pictures are in %s:\n' "$PWD/out"
+printf '  %s\n' teapot.ply teapot.png bearing_block.glb bearing_block.png ''
 for i in "${!names[@]}"; do
   printf '%-8s %4d.%03d s\n' "${names[i]}" $((times[i] / 1000000)) $((times[i] / 1000 % 1000))
 done

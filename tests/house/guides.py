@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Follows the guides as a newcomer would: guides.py GUIDE.md FOLDER PREFIX CMAKE GENERATOR COMPILER [--print].
+"""Follows the guides as a newcomer would: guides.py GUIDE.md FOLDER PREFIX CMAKE GENERATOR COMPILER [--print] [--shell BUILD].
 
 A block of a guide whose fence names a file, ```cpp main.cpp, goes to that file, one block after the other. The project
 is built against the package installed in PREFIX; a block of Rust is a program of its own, tried where rustc is. An
 ```output PROGRAM ARGUMENTS block must be what PROGRAM prints, and its exit status 0; with ```failure instead of
 ```output the status must be 1. Arguments that begin with tools/ are files of the sources. --print shows what it prints
-instead.
+instead. --shell runs the lines of all ```sh blocks instead, in one shell whose build/demo is the folder BUILD; they must
+build the project.
 """
 
 import os
@@ -26,6 +27,17 @@ def blocks_of(text):
         yield (*found.groups(), text.count('\n', 0, found.start()) + 1)
 
 
+def run_shell_lines(text, folder, build):
+    """Runs them where a clone's tools, build/demo and home would be. Set-up and builds have been made: tools/*.sh, sudo."""
+    (folder / 'build').mkdir(exist_ok=True)
+    for name, target in (('tools', SOURCES / 'tools'), ('build/demo', pathlib.Path(build).resolve())):
+        (folder / name).symlink_to(target)
+    lines = ''.join(re.findall(r'^```sh\n(.*?)^```$', text, re.M | re.S)).splitlines()
+    lines = [line for line in lines if not re.match(r'(tools/\w+\.sh|sudo) ?', line)]
+    subprocess.run(['bash', '-euxc', '\n'.join(lines)], check=True, cwd=folder, stdin=subprocess.DEVNULL,
+                   env=os.environ | {'HOME': str(folder)})
+
+
 def main():
     guide, folder, prefix, cmake, generator, compiler = sys.argv[1:7]
     guide, folder = pathlib.Path(guide), pathlib.Path(folder)
@@ -43,10 +55,13 @@ def main():
         sys.exit(f'{guide} has no project, or no program that prints anything')
     for name, content in places.items():
         (folder / name).write_text(content, encoding='utf-8')
-    subprocess.run([cmake, '-S', folder, '-B', folder / 'build', '-G', generator, f'-DCMAKE_PREFIX_PATH={prefix}',
-                    '-DCMAKE_BUILD_TYPE=Release', f'-DCMAKE_CXX_COMPILER={compiler}',
-                    '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror', '-DCMAKE_C_FLAGS=-Wall -Wextra -Werror'], check=True)
-    subprocess.run([cmake, '--build', folder / 'build'], check=True)
+    if '--shell' in sys.argv:
+        run_shell_lines(guide.read_text(encoding='utf-8'), folder, sys.argv[sys.argv.index('--shell') + 1])
+    else:
+        subprocess.run([cmake, '-S', folder, '-B', folder / 'build', '-G', generator, f'-DCMAKE_PREFIX_PATH={prefix}',
+                        '-DCMAKE_BUILD_TYPE=Release', f'-DCMAKE_CXX_COMPILER={compiler}',
+                        '-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror', '-DCMAKE_C_FLAGS=-Wall -Wextra -Werror'], check=True)
+        subprocess.run([cmake, '--build', folder / 'build'], check=True)
     for name in places:
         if not name.endswith('.rs'):
             continue
