@@ -38,7 +38,8 @@ TEST(BezierExtraction, ReproducesTheSurface) {
   for (const auto& [p, q] : {std::pair{1, 1}, {2, 3}, {3, 3}, {5, 4}, {8, 1}, {15, 15}})
     for (std::size_t k = 0; k < extracted_styles.size(); ++k)
       for (const bool rational : {false, true}) {
-        const BSplineSurface s = random_surface(random, p, q, extracted_styles[k], extracted_styles[(k + 3) % extracted_styles.size()], rational);
+        const BSplineSurface s = random_surface(random, p, q, extracted_styles[k],
+                                                extracted_styles[(k + 3) % extracted_styles.size()], rational);
         expect_same(s, value_of(to_bezier(s)), random, 8);
       }
 }

@@ -129,7 +129,8 @@ TEST(SplineConvert, SurfacesAreRefinedClampedAndElevated) {
   for (const auto& [p, q] : {std::pair{1, 3}, {3, 2}, {5, 5}})
     for (std::size_t k = 0; k < knot_styles.size(); ++k)
       for (const bool rational : {false, true}) {
-        const BSplineSurface s = random_surface(random, p, q, knot_styles[k], knot_styles[(k + 3) % knot_styles.size()], rational);
+        const BSplineSurface s =
+            random_surface(random, p, q, knot_styles[k], knot_styles[(k + 3) % knot_styles.size()], rational);
         const std::vector<double> u{s.domain().u_at(0.3)}, v{s.domain().v_at(0.45), s.domain().v_at(0.9)};
         const BSplineSurface more = value_of(insert_knots(s, u, v));
         EXPECT_EQ(more.count_u(), s.count_u() + 1);

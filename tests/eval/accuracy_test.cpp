@@ -24,8 +24,9 @@ struct PositionErrors {
   double plain = 0;   // of polynomial positions, the largest |coefficient| times the unit being 1
 
   void grow(const PositionErrors& other) {
-    for (double PositionErrors::*const e : {&PositionErrors::polynomial, &PositionErrors::rational, &PositionErrors::derivative,
-                                    &PositionErrors::rational_derivative, &PositionErrors::normal, &PositionErrors::plain})
+    for (double PositionErrors::*const e :
+         {&PositionErrors::polynomial, &PositionErrors::rational, &PositionErrors::derivative,
+          &PositionErrors::rational_derivative, &PositionErrors::normal, &PositionErrors::plain})
       this->*e = std::max(this->*e, other.*e);
   }
 };
@@ -80,8 +81,9 @@ void add_errors(const BezierPatch& patch, const GridBuffers<T>& out, std::size_t
 }
 
 template <class T>
-PositionErrors position_errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u, const std::vector<double>& v,
-                 Representation representation = Representation::bernstein) {
+PositionErrors position_errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u,
+                                  const std::vector<double>& v,
+                                  Representation representation = Representation::bernstein) {
   GridBuffers<T> out(plan);
   const Status status = evaluate(set, plan, out.views());
   EXPECT_TRUE(status.ok()) << status.message();

@@ -43,8 +43,9 @@ struct GeometryErrors {
   int undefined = 0;
 
   void grow(const GeometryErrors& other) {
-    for (double GeometryErrors::*const e : {&GeometryErrors::second, &GeometryErrors::first_form, &GeometryErrors::second_form, &GeometryErrors::curvature,
-                                    &GeometryErrors::gaussian, &GeometryErrors::direction})
+    for (double GeometryErrors::*const e :
+         {&GeometryErrors::second, &GeometryErrors::first_form, &GeometryErrors::second_form,
+          &GeometryErrors::curvature, &GeometryErrors::gaussian, &GeometryErrors::direction})
       this->*e = std::max(this->*e, other.*e);
     undefined += other.undefined;
   }
@@ -79,7 +80,7 @@ void add_curvature_errors(const QuantityViews<T>& out, std::size_t record, const
 
 template <class T>
 GeometryErrors geometry_errors_of(const PatchSet& set, const GridPlan& plan, const std::vector<double>& u,
-                 const std::vector<double>& v) {
+                                  const std::vector<double>& v) {
   AllBuffers<T> memory(plan);
   const QuantityViews<T> out = memory.views();
   EXPECT_TRUE(evaluate(set, plan, out).ok());

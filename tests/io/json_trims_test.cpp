@@ -116,8 +116,8 @@ TEST(JsonTrims, EveryKindOfCurveIsRead) {
 }
 
 std::string json_trims_error_in(const std::string& trims) {
-  const Result<Model> model =
-      parse_json_model(json_with(surface_of("bezier", json_trims_kinds[0].second + ",\n\"trims\": " + trims)), "m.json");
+  const Result<Model> model = parse_json_model(
+      json_with(surface_of("bezier", json_trims_kinds[0].second + ",\n\"trims\": " + trims)), "m.json");
   EXPECT_FALSE(model.ok()) << trims;
   return model.ok() ? "" : model.status().message();
 }

@@ -65,8 +65,9 @@ void bad_ids(const std::function<void(const std::string&, const Change&)>& row) 
   row("a coedge of no edge", [](Shape& s) { change_loop(s, 1, [](TrimLoop& loop) { loop.coedges[2] = {}; }); });
   row("a coedge too few", [](Shape& s) { change_loop(s, 1, [](TrimLoop& loop) { loop.coedges.pop_back(); }); });
   const auto states = [&](const std::string& input, const Vec3& from, const Vec3& to) {
-    row(input,
-        [=](Shape& s) { change_loop(s, 1, [&](TrimLoop& loop) { loop.coedges[0].parameter = space_line(from, to); }); });
+    row(input, [=](Shape& s) {
+      change_loop(s, 1, [&](TrimLoop& loop) { loop.coedges[0].parameter = space_line(from, to); });
+    });
   };
   states("parameters of a coedge that leave its curve", {-5, 0, 0}, {7, 0, 0});
   states("parameters of a coedge that stand still", {0.5, 0, 0}, {0.5, 0, 0});

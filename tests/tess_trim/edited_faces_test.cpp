@@ -63,10 +63,11 @@ TEST(EditedFaces, CutPatchesFollowNeighboursThatAreWelded) {
       }
     const std::vector<double> knots{0, 0, 0, 0, 1, 1, 1, 1};
     Model model;
-    model.surfaces.push_back({.name = {},
-                              .surface = value_of(BSplineSurface::polynomial(3, knots, 3, knots, cut)),
-                              .trims = std::vector<TrimLoop>{space_polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
-                                                             circle_loop(0.4, 0.5, 0.2, true)}});
+    model.surfaces.push_back(
+        {.name = {},
+         .surface = value_of(BSplineSurface::polynomial(3, knots, 3, knots, cut)),
+         .trims = std::vector<TrimLoop>{space_polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
+                                        circle_loop(0.4, 0.5, 0.2, true)}});
     model.surfaces.push_back({.name = {}, .surface = polynomial(3, 3, whole)});
     model.surfaces.push_back({.name = {}, .surface = polynomial(3, 3, third)});
     const PatchSet set = value_of(make_patch_set(model));
@@ -127,7 +128,8 @@ TEST(EditedFaces, UpdatesKeepBoundsAndAreLikeNewPlans) {
   const char* const wanted = std::getenv("TESSERA_EDITS");
   const std::uint64_t sets = wanted ? std::strtoull(wanted, nullptr, 10) / 8 : 12;
   const auto face = [] {
-    return Face(wavy(), {space_polygon({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}}), circle_loop(1.7, 1.4, 0.6, true)}).set;
+    return Face(wavy(), {space_polygon({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}}), circle_loop(1.7, 1.4, 0.6, true)})
+        .set;
   };
   for (std::uint64_t seed = 1; seed <= sets; ++seed) {
     SCOPED_TRACE("set " + std::to_string(seed));

@@ -253,7 +253,8 @@ Status write_rows_of_team(const Loaded& loaded, const Places& places, const Eval
   return {};
 }
 
-Status write_all_rows(const Loaded& loaded, const Places& places, const EvalOptions& options, bool json, OutputFile& out) {
+Status write_all_rows(const Loaded& loaded, const Places& places, const EvalOptions& options, bool json,
+                      OutputFile& out) {
   if (options.team) return write_rows_of_team(loaded, places, options, json, out);
   Evaluator evaluator(loaded.model, options.models.fit);
   Progress progress("evaluating");

@@ -53,8 +53,8 @@ std::string help_text(const Command& tool, const Command& command) {
   for (const Option& option : command.options) {
     if (option.heading != heading) text += "\n" + option.heading + ":\n";
     heading = option.heading;
-    text +=
-        entry(spelled_out(option), option.full_text() + (option.required && !option.is_positional() ? " (required)" : ""));
+    text += entry(spelled_out(option),
+                  option.full_text() + (option.required && !option.is_positional() ? " (required)" : ""));
   }
   return text + "\n" + command.footer + "\n";
 }

@@ -46,11 +46,12 @@ Result<GltfText> split_glb(std::string_view bytes, std::string_view name) {
     return gltf_error(name, "the file ends in its header, after " + counted(bytes.size(), "byte"));
   const std::uint32_t version = u32_at(bytes, 4), length = u32_at(bytes, 8);
   if (version != 2)
-    return gltf_error(name, "found version " + std::to_string(version) + " of the container, this reader knows version 2",
-                 StatusCode::unsupported);
-  if (length != bytes.size())
     return gltf_error(name,
-                 "the header states " + counted(length, "byte") + ", the file has " + std::to_string(bytes.size()));
+                      "found version " + std::to_string(version) + " of the container, this reader knows version 2",
+                      StatusCode::unsupported);
+  if (length != bytes.size())
+    return gltf_error(
+        name, "the header states " + counted(length, "byte") + ", the file has " + std::to_string(bytes.size()));
   GltfText text;
   std::size_t chunk = 0;
   for (std::size_t at = glb_header; at < bytes.size(); ++chunk) {
@@ -58,8 +59,8 @@ Result<GltfText> split_glb(std::string_view bytes, std::string_view name) {
     const std::size_t size = left < chunk_header ? left : u32_at(bytes, at);
     if (left < chunk_header || size > left - chunk_header)
       return gltf_error(name, "chunk " + std::to_string(chunk + 1) + " is longer than the file: it needs " +
-                             std::to_string(left < chunk_header ? chunk_header : size) + " bytes, there are " +
-                             std::to_string(left < chunk_header ? left : left - chunk_header));
+                                  std::to_string(left < chunk_header ? chunk_header : size) + " bytes, there are " +
+                                  std::to_string(left < chunk_header ? left : left - chunk_header));
     const std::string_view type = bytes.substr(at + 4, 4), content = bytes.substr(at + chunk_header, size);
     if ((type == "JSON") != (chunk == 0)) return gltf_error(name, "expected one chunk of JSON, as the first one");
     if (chunk == 0) text.json = content;

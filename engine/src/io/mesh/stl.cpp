@@ -184,11 +184,11 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
   if (begins_with_solid(bytes, name)) return AsciiReader(bytes, name).read();
   if (!has_header)
     return stl_error(name, "the file does not begin with solid, and with " + std::to_string(bytes.size()) +
-                           " bytes it is too short for a binary STL file");
+                               " bytes it is too short for a binary STL file");
   return stl_error(name, "the header states " + std::to_string(stated_triangles(bytes)) +
-                         " triangles; the file has room for " +
-                         std::to_string((bytes.size() - header_bytes) / triangle_bytes) + " and " +
-                         std::to_string((bytes.size() - header_bytes) % triangle_bytes) + " bytes more");
+                             " triangles; the file has room for " +
+                             std::to_string((bytes.size() - header_bytes) / triangle_bytes) + " and " +
+                             std::to_string((bytes.size() - header_bytes) % triangle_bytes) + " bytes more");
 }
 
 }  // namespace tessera::inline abi_0_1

@@ -27,12 +27,12 @@ namespace {
 
 /// Requests that draw shapes that are not read. All other requests say how, and from where, the scene is drawn.
 constexpr std::string_view unread_requests[] = {"Polygon",         "GeneralPolygon",
-                                       "PointsPolygons",  "PointsGeneralPolygons",
-                                       "SubdivisionMesh", "HierarchicalSubdivisionMesh",
-                                       "Curves",          "Points",
-                                       "Blobby",          "Volume",
-                                       "Geometry",        "Procedural",
-                                       "Procedural2",     "ReadArchive"};
+                                                "PointsPolygons",  "PointsGeneralPolygons",
+                                                "SubdivisionMesh", "HierarchicalSubdivisionMesh",
+                                                "Curves",          "Points",
+                                                "Blobby",          "Volume",
+                                                "Geometry",        "Procedural",
+                                                "Procedural2",     "ReadArchive"};
 /// Requests that move later shapes in ways that are not read.
 constexpr std::string_view other_transforms[] = {"Skew", "Perspective", "Deformation", "CoordSysTransform"};
 

@@ -108,8 +108,9 @@ constexpr QuadricRequest quadric_requests[] = {
 }  // namespace
 
 Result<RibQuadric> read_quadric(const RibSurfaceText& text) {
-  const QuadricRequest& shape = *std::find_if(std::begin(quadric_requests), std::end(quadric_requests),
- [&](const QuadricRequest& known) { return known.request == text.request; });
+  const QuadricRequest& shape =
+      *std::find_if(std::begin(quadric_requests), std::end(quadric_requests),
+                    [&](const QuadricRequest& known) { return known.request == text.request; });
   std::array<double, 7> values{};
   const std::span<double> numbers = std::span(values).first(shape.count);
   Status status = text.lexer.take_numbers(

@@ -49,7 +49,8 @@ struct EmbreeLeaves::State {
   /// Searches a leaf for the valid rays of a call, then calls `then(k, ray, query)` for each. On machines without wider
   /// vectors Embree 3 splits 16 rays into eights or fours; a part without a ray of ours has lanes that it calls valid.
   template <class IdOf, class Then>
-  void search(unsigned leaf, LeafCall& call, unsigned count, const int* valid, const IdOf& id_of, const Then& then) const {
+  void search(unsigned leaf, LeafCall& call, unsigned count, const int* valid, const IdOf& id_of,
+              const Then& then) const {
     unsigned lanes = 0, places = 0;
     for (unsigned k = 0; k < count; ++k) {
       const unsigned ray = id_of(k), is_ours = static_cast<unsigned>(valid[k]) & call.used >> ray & 1u;

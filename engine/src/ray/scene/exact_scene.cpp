@@ -33,7 +33,7 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr double default_tolerance = 2e-12;                     // share of the size
+constexpr double default_tolerance = 2e-12;  // share of the size
 constexpr std::size_t max_leaves = 0xffffffff;
 constexpr double max_bend = 1;     // share of a piece's length
 constexpr double max_reach = 0.5;  // of tubes beyond the box of pieces, in the scene's coordinates: see embree_ray.h

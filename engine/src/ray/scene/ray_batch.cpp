@@ -17,7 +17,6 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
-
 template <class T>
 class RayArrays final : public RayReader {
  public:

@@ -136,7 +136,8 @@ void occlude_scene(const RTCOccludedFunctionNArguments* arguments) {
   const SceneCall call(arguments, arguments->ray);
   for (unsigned k = 0; k < arguments->N; ++k) {
     RTCHit hit;
-    if (arguments->valid[k] != 0 && call.meet(k, hit)) RTCRayN_tfar(arguments->ray, arguments->N, k) = -std::numeric_limits<float>::infinity();
+    if (arguments->valid[k] != 0 && call.meet(k, hit))
+      RTCRayN_tfar(arguments->ray, arguments->N, k) = -std::numeric_limits<float>::infinity();
   }
 }
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <optional>
 
-#include "ray/tube/edge_tubes.h"
 #include "base/infinity.h"
+#include "ray/tube/edge_tubes.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
 constexpr int max_points = 4096;  // of curves, for one ray and one tube
-constexpr double fine = 1e-3;  // share of the gap up to which a curve may leave its chord
+constexpr double fine = 1e-3;     // share of the gap up to which a curve may leave its chord
 
 /// A part of a chord's curve: it lies within `off` of the line between its ends.
 template <class Point>

@@ -90,7 +90,8 @@ class Needs {
   PieceRates by_halves(PieceRates needed, const PieceRates& other, bool other_is_u) const {
     if (!is_for_halves()) return needed;
     for (int half = 0; half < 2; ++half) {
-      const double fixed = *std::min_element(other.begin() + half * half_parts, other.begin() + (half + 1) * half_parts);
+      const double fixed =
+          *std::min_element(other.begin() + half * half_parts, other.begin() + (half + 1) * half_parts);
       for (int wanted = 0; wanted < 2; ++wanted) {
         const int quarter = other_is_u ? 2 * half + wanted : 2 * wanted + half;
         double rate = least_rate;
@@ -99,7 +100,8 @@ class Needs {
         if (limits_.picture)
           rate = std::max(rate, limits_.picture->needed_in_quarter(limits_.pixels, fixed, other_is_u, quarter));
         const auto least = static_cast<float>(std::min(rate * (1 + 0x1p-20 + 0x1p-23 * rate), 1e6));
-        for (int e = wanted * half_parts; e < (wanted + 1) * half_parts; ++e) needed[index(e)] = std::max(needed[index(e)], least);
+        for (int e = wanted * half_parts; e < (wanted + 1) * half_parts; ++e)
+          needed[index(e)] = std::max(needed[index(e)], least);
       }
     }
     return needed;

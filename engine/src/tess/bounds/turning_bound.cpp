@@ -206,7 +206,7 @@ class TurningSearch {
       return;
     }
     const NormalPiece quarter[4] = {this->net(depth + 1, 0), this->net(depth + 1, 1), this->net(depth + 1, 2),
-                            this->net(depth + 1, 3)};
+                                    this->net(depth + 1, 3)};
     std::copy_n(net.at[0], size_of_net(), quarter[3].at[0]);
     cut(quarter[3], quarter[1], true);
     cut(quarter[1], quarter[0], false);

@@ -248,7 +248,8 @@ class Welder {
       };
       if (std::ranges::any_of(sides, holds)) continue;
       for (const std::uint32_t side : sides)
-        if (const std::uint32_t edge = edge_of_border(4 * patch + side); edge != SharedEdges::none) kept.push_back(canonical(edge));
+        if (const std::uint32_t edge = edge_of_border(4 * patch + side); edge != SharedEdges::none)
+          kept.push_back(canonical(edge));
     }
     for (const std::uint32_t edge : kept) is_pole_[edge] = 0;
   }

@@ -107,7 +107,8 @@ Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::o
   const auto write = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) writer.write_edit(closed.edits[k]);
   };
-  if (Status status = parallel_for(closed.edits.size(), edited_patches_per_task, quiet, write); !status.ok()) return status;
+  if (Status status = parallel_for(closed.edits.size(), edited_patches_per_task, quiet, write); !status.ok())
+    return status;
   const auto move = [&](std::size_t begin, std::size_t end) {
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
       if (!out.position.empty()) writer.move(place, out.position, {});
