@@ -182,7 +182,8 @@ void reading(Table& table) {
   table.row("a packed file that is cut", parse_error, read_mesh("cut.obj.gz"));
   table.row("an extension that is not known below .gz", unsupported, read_mesh("packed.off.gz"));
   table.row("a name of 5,000 letters", io_error, [] {
-    const Status status = read_model(std::string(5000, 'x') + ".bpt").status();
+    std::string name(5000, 'x');
+    const Status status = read_model(name.append(".bpt")).status();
     return Status(status.code(), "x..." + status.message().substr(5000));
   }());
 }
