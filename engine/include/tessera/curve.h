@@ -61,7 +61,7 @@ class Curve {
   std::span<const double> knots() const { return data_->knots; }  ///< points().size() + degree() + 1
   const Interval& domain() const { return data_->domain; }        ///< interval on which it is evaluated
   /// Compares degree, points, weights, knots and domain, by the == of numbers.
-  friend bool operator==(const Curve& a, const Curve& b);
+  bool operator==(const Curve& other) const;
 
  private:
   struct Data {

@@ -52,7 +52,7 @@ class BasisMatrix {
   double inverse_coefficient(int i, int k) const { return data_->from_bernstein[index(i, k)]; }
 
   /// Compares the matrices.
-  friend bool operator==(const BasisMatrix& a, const BasisMatrix& b);
+  bool operator==(const BasisMatrix& other) const;
 
  private:
   struct Data {

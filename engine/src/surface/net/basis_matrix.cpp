@@ -138,7 +138,7 @@ Status check_entries(int degree, std::span<const double> entries) {
 
 BasisMatrix::BasisMatrix(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
 
-bool operator==(const BasisMatrix& a, const BasisMatrix& b) { return a.data_ == b.data_ || *a.data_ == *b.data_; }
+bool BasisMatrix::operator==(const BasisMatrix& other) const { return data_ == other.data_ || *data_ == *other.data_; }
 
 Result<BasisMatrix> BasisMatrix::bezier(int degree) {
   return guarded([&]() -> Result<BasisMatrix> {

@@ -65,7 +65,7 @@ struct ActingPoints {
 
 Curve::Curve(Data data) : data_(std::make_shared<const Data>(std::move(data))) {}
 
-bool operator==(const Curve& a, const Curve& b) { return a.data_ == b.data_ || *a.data_ == *b.data_; }
+bool Curve::operator==(const Curve& other) const { return data_ == other.data_ || *data_ == *other.data_; }
 
 Result<Curve> Curve::bezier(std::span<const Vec3> points, std::span<const double> weights, const Interval& domain) {
   return guarded([&]() -> Result<Curve> {
