@@ -1,8 +1,12 @@
-// The vertices that faces share along edges, as the planner asks for them.
+// The vertices that faces share along edges.
 
 #include "tess/closing/closed_edges.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <numbers>
+#include <random>
 
 #include "base/impl_access.h"
 #include "tess_trim/closed_shape.h"
@@ -32,6 +36,59 @@ TEST(ClosedEdges, AreNotMadeOnceTheCallIsCancelled) {
   }
   cancel = true;
   EXPECT_EQ(close(&cancel).status().code(), StatusCode::cancelled);
+}
+
+/// The triangle a, b, c as a face with a pole at c, on side 0 .. 3 of its domain. Its patches meet at `lines`, shares of
+/// the way to c.
+ModelSurface triangle_face(const Vec3& a, const Vec3& b, const Vec3& c, unsigned side, std::vector<double> lines) {
+  const bool is_last = side % 2 == 0, along_u = side < 2;
+  lines.insert(lines.begin(), 0), lines.push_back(1);
+  std::vector<Vec3> points;
+  const std::size_t rows = lines.size();
+  for (std::size_t k = 0; k < 2 * rows; ++k) {
+    const std::size_t row = along_u ? k / 2 : k % rows;
+    const double share = is_last ? lines[row] : lines[rows - 1 - row];
+    points.push_back((1 - share) * ((along_u ? k % 2 : k / rows) ? b : a) + share * c);
+  }
+  if (!is_last) {
+    std::ranges::reverse(lines);
+    for (double& line : lines) line = 1 - line;
+  }
+  lines.insert(lines.begin(), 0), lines.push_back(1);
+  const std::vector<double> across{0, 0, 1, 1};
+  return {.name = std::string("triangle"),
+          .surface =
+              value_of(BSplineSurface::polynomial(1, along_u ? lines : across, 1, along_u ? across : lines, points))};
+}
+
+/// Pyramids whose faces have poles at the top, and vertices where others have none along their common edges.
+TEST(ClosedEdges, TrianglesAtPolesTakeTheVerticesOfTheirNeighbours) {
+  std::mt19937_64 random(5);
+  const auto number = [&](double to) { return std::uniform_real_distribution<double>(0, to)(random); };
+  for (int round = 0; round < 60; ++round) {
+    const std::size_t count = 3 + random() % 4;
+    std::vector<Vec3> corners;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count);
+      corners.push_back({2 * std::cos(angle), 2 * std::sin(angle), 0});
+    }
+    std::vector<Vec3> base;
+    for (const Vec3& p : corners) base.push_back(p + Vec3{2, 2, 0});
+    std::vector<ModelSurface> faces{rectangle_face({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, {polygon(base)})};
+    for (std::size_t k = 0; k < count; ++k) {
+      std::vector<double> lines;
+      for (double at = 0.1 + number(0.4); lines.size() < random() % 4 && at < 0.95; at += 0.1 + number(0.4))
+        lines.push_back(at);
+      faces.push_back(triangle_face(corners[k], corners[(k + 1) % count], {0, 0, 3}, random() % 4, lines));
+    }
+    const ShapeMesh made = mesh_of(joined(faces, 1e-6), {.tolerance = 1e-3});
+    EXPECT_TRUE(made.report.closed()) << round << ": " << made.report.open_edges << " open edges";
+    EXPECT_EQ(made.open_edges, 0u) << round;
+    const double sector = std::sin(2 * std::numbers::pi / static_cast<double>(count)),
+                 radius = 2 * std::cos(std::numbers::pi / static_cast<double>(count));
+    const double side = 2 * std::sin(std::numbers::pi / static_cast<double>(count)) * std::hypot(3, radius);
+    EXPECT_NEAR(volume_and_area(made.mesh)[1], static_cast<double>(count) * (2 * sector + side), 1e-4) << round;
+  }
 }
 
 }  // namespace

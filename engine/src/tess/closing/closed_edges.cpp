@@ -14,6 +14,24 @@
 namespace tessera::inline abi_0_1 {
 namespace {
 
+/// Returns the first vertex of a division's ring at the place of this one: another one where it lies on collapsed
+/// borders.
+std::uint32_t first_at_pole(const Division& division, std::uint32_t vertex) {
+  const auto first = static_cast<std::uint32_t>(division.inner_count()),
+             end = static_cast<std::uint32_t>(division.vertex_count());
+  if (!division.collapsed.any() || vertex < first || vertex >= end) return vertex;
+  if (division.has_one_corner()) return first;
+  const auto is_pole = [&](std::size_t side) { return division.collapsed.has(edge_of(all_sides[side])); };
+  const auto count = [&](std::size_t side) { return static_cast<std::uint32_t>(division.border[side].rate()); };
+  std::size_t side = 0;
+  std::uint32_t start = first;  // of the side
+  for (; side < 3 && vertex - start >= count(side); ++side) start += count(side);
+  if (vertex != start && !is_pole(side)) return vertex;
+  for (std::size_t before; is_pole(before = (side + 3) % 4); side = before)  // back along the ring
+    start = (side == 0 ? end : start) - count(before);
+  return start;
+}
+
 class Closer {
  public:
   Closer(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions, std::span<CutPatch> cuts,
@@ -204,7 +222,8 @@ class Closer {
       const ChordBound chord = chord_(patch);
       // A chord's sliver, and that of its parts beside it.
       if (std::ranges::any_of(inserted, &InsertedVertex::is_on_chord)) cut->sliver *= 2;
-      for (const std::uint32_t k : insert_vertices(inserted, first, cut->triangles))
+      const auto itself = [](std::uint32_t vertex) { return vertex; };  // cut patches have one vertex at a pole
+      for (const std::uint32_t k : insert_vertices(inserted, first, itself, cut->triangles))
         cut->measure(cut->triangles[k], chord);
       for (std::size_t k = count; k < cut->triangles.size(); ++k) cut->measure(cut->triangles[k], chord);
       out_.edited_cuts.push_back(static_cast<std::uint32_t>(cut - cuts_.data()));
@@ -218,7 +237,8 @@ class Closer {
     PatchEdit& edit = out_.edits.emplace_back();
     edit.patch = patch;
     for (const InsertedVertex& vertex : inserted) edit.vertices.push_back(vertex.local);
-    for (const std::uint32_t k : insert_vertices(inserted, first, triangles))
+    const auto pole = [&](std::uint32_t vertex) { return first_at_pole(division, vertex); };
+    for (const std::uint32_t k : insert_vertices(inserted, first, pole, triangles))
       edit.changed.emplace_back(k, triangles[k]);
     edit.added.assign(triangles.begin() + static_cast<std::ptrdiff_t>(count), triangles.end());
     return first;

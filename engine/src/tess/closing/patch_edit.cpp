@@ -14,30 +14,38 @@ std::uint64_t key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{f
 /// The triangles that have given segments as sides, in the direction of the triangle.
 class SideOwners {
  public:
+  /// A triangle, and its corner where the side starts.
+  struct Side {
+    std::uint32_t triangle = CutPatch::none;
+    std::size_t corner = 0;
+    bool exists() const { return triangle != CutPatch::none; }
+  };
+
+  explicit SideOwners(FunctionRef<std::uint32_t(std::uint32_t)> pole) : pole_(pole) {}
   void want(std::uint32_t from, std::uint32_t to) {
-    owners_.emplace(key(from, to), CutPatch::none);
-    owners_.emplace(key(to, from), CutPatch::none);
+    owners_.emplace(key(pole_(from), pole_(to)), Side{});
+    owners_.emplace(key(pole_(to), pole_(from)), Side{});
   }
   void note(const Triangle& triangle, std::uint32_t index) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto owner = owners_.find(key(triangle[c], triangle[(c + 1) % 3]));
-      if (owner != owners_.end()) owner->second = index;
+      const auto owner = owners_.find(key(pole_(triangle[c]), pole_(triangle[(c + 1) % 3])));
+      if (owner != owners_.end()) owner->second = {index, c};
     }
   }
-  std::uint32_t of(std::uint32_t from, std::uint32_t to) const { return owners_.at(key(from, to)); }
+  Side of(std::uint32_t from, std::uint32_t to) const { return owners_.at(key(pole_(from), pole_(to))); }
 
  private:
-  std::unordered_map<std::uint64_t, std::uint32_t> owners_;
+  FunctionRef<std::uint32_t(std::uint32_t)> pole_;
+  std::unordered_map<std::uint64_t, Side> owners_;
 };
 
-/// Replaces a triangle with the side from `a` to `b` by the fan of its parts. `inside`: the vertices from a to b.
-void divide(std::uint32_t owner, std::uint32_t a, std::uint32_t b, std::span<const std::uint32_t> inside,
-            std::vector<Triangle>& triangles, SideOwners& owners) {
-  std::uint32_t apex = 0;
-  for (const std::uint32_t corner : triangles[owner])
-    if (corner != a && corner != b) apex = corner;
-  triangles[owner] = {a, inside.front(), apex};
-  owners.note(triangles[owner], owner);
+/// Replaces a triangle with a side by the fan of its parts. `inside`: the vertices along the side.
+void divide(SideOwners::Side side, std::span<const std::uint32_t> inside, std::vector<Triangle>& triangles,
+            SideOwners& owners) {
+  const Triangle whole = triangles[side.triangle];
+  const std::uint32_t a = whole[side.corner], b = whole[(side.corner + 1) % 3], apex = whole[(side.corner + 2) % 3];
+  triangles[side.triangle] = {a, inside.front(), apex};
+  owners.note(triangles[side.triangle], side.triangle);
   for (std::size_t k = 0; k < inside.size(); ++k) {
     triangles.push_back({inside[k], k + 1 < inside.size() ? inside[k + 1] : b, apex});
     owners.note(triangles.back(), static_cast<std::uint32_t>(triangles.size() - 1));
@@ -47,29 +55,26 @@ void divide(std::uint32_t owner, std::uint32_t a, std::uint32_t b, std::span<con
 }  // namespace
 
 std::vector<std::uint32_t> insert_vertices(std::span<const InsertedVertex> inserted, std::uint32_t first,
+                                           FunctionRef<std::uint32_t(std::uint32_t)> pole,
                                            std::vector<Triangle>& triangles) {
-  SideOwners owners;
+  SideOwners owners(pole);
   for (const InsertedVertex& vertex : inserted) owners.want(vertex.start, vertex.end);
   for (std::uint32_t k = 0; k < triangles.size(); ++k) owners.note(triangles[k], k);
   const auto count = static_cast<std::uint32_t>(triangles.size());
-  std::vector<std::uint32_t> changed;
-  const auto divide_owner = [&](std::uint32_t owner, std::uint32_t a, std::uint32_t b,
-                                std::span<const std::uint32_t> at) {
-    if (owner < count) changed.push_back(owner);
-    divide(owner, a, b, at, triangles, owners);
-  };
-  std::vector<std::uint32_t> inside;
+  std::vector<std::uint32_t> changed, inside;
   for (std::size_t k = 0; k < inserted.size();) {
     const std::uint32_t start = inserted[k].start, end = inserted[k].end;
     inside.clear();
     for (; k < inserted.size() && inserted[k].start == start && inserted[k].end == end; ++k)
       inside.push_back(first + static_cast<std::uint32_t>(k));
-    if (const std::uint32_t owner = owners.of(start, end); owner != CutPatch::none) {
-      divide_owner(owner, start, end, inside);
-    } else if (const std::uint32_t other = owners.of(end, start); other != CutPatch::none) {
+    SideOwners::Side side = owners.of(start, end);
+    if (!side.exists()) {
+      side = owners.of(end, start);
       std::ranges::reverse(inside);
-      divide_owner(other, end, start, inside);
     }
+    if (!side.exists()) continue;
+    if (side.triangle < count) changed.push_back(side.triangle);
+    divide(side, inside, triangles, owners);
   }
   std::ranges::sort(changed);
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());

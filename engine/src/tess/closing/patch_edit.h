@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/function_ref.h"
 #include "tess/closing/edge_segments.h"
 
 namespace tessera::inline abi_0_1 {
@@ -26,11 +27,14 @@ struct PatchEdit {
 /// Bound: on a straight side, the parameters of the fan are those of the triangle.
 ///
 /// - `inserted`: of this patch, those of one segment together and by growing `at`. The k-th becomes vertex first + k.
+/// - `pole`: the vertex that stands for a patch's own one: one and the same for all at a pole, as a triangle there has
+///   only one of them.
 /// - `triangles`: changed in place; new ones are appended.
 ///
 /// Returns the triangles that were changed, without new ones. Vertices in segments that no triangle has as a side
 /// belong to none.
 std::vector<std::uint32_t> insert_vertices(std::span<const InsertedVertex> inserted, std::uint32_t first,
+                                           FunctionRef<std::uint32_t(std::uint32_t)> pole,
                                            std::vector<CutPatch::Triangle>& triangles);
 
 }  // namespace tessera::inline abi_0_1
