@@ -38,6 +38,23 @@ TEST(ClosedEdges, AreNotMadeOnceTheCallIsCancelled) {
   EXPECT_EQ(close(&cancel).status().code(), StatusCode::cancelled);
 }
 
+/// A curve that starts far from its edge's vertex leaves the other faces there as they are.
+TEST(ClosedEdges, VerticesStandWhereTheShapeStatesThem) {
+  for (const double gap : {1e-3, 0.1, 1.0}) {
+    Shape shape = joined(drilled_plate(), 1e-6);
+    std::vector<TrimLoop> loops = *shape.faces[0].trims;
+    const Vec3 start = loops[0].curves[1].points().front(), end = loops[0].curves[1].points().back();
+    loops[0].curves[1] = line(start + gap / length(end - start) * (end - start), end);
+    shape.faces[0].trims = std::move(loops);
+    const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3});
+    EXPECT_TRUE(made.report.closed()) << gap;
+    EXPECT_EQ(made.open_edges, 0u) << gap;
+    EXPECT_NEAR(made.gap, gap, 1e-6);
+    const auto [volume, area] = volume_and_area(made.mesh);
+    EXPECT_NEAR(volume, drilled_volume(), area * (made.bound + 1e-6)) << gap;
+  }
+}
+
 /// The triangle a, b, c as a face with a pole at c, on side 0 .. 3 of its domain. Its patches meet at `lines`, shares of
 /// the way to c.
 ModelSurface triangle_face(const Vec3& a, const Vec3& b, const Vec3& c, unsigned side, std::vector<double> lines) {

@@ -224,8 +224,8 @@ struct MeshChange {
 /// one position. So the mesh of a closed shell has no open edges at any tolerance, and those of an open shell are its
 /// borders.
 ///
-/// - A vertex of several faces stands in the middle of the box of their points. How far it leaves a face is no part of
-///   bound(); see gap() and edge_gaps(). A file whose faces are farther apart than the tolerance is meshed, and closed.
+/// - A vertex of several faces stands in the middle of the box of their points, or at the shape's vertex within it. How
+///   far it leaves a face is no part of bound(), see gap(): faces farther apart than the tolerance are meshed and closed.
 /// - Vertices of faces at parameters of an edge nearer than 1e-5 of its range, and a small part of the tolerance, count
 ///   as one; gap() includes this.
 /// - Chords of trimmed faces end at common parameters. A whole patch keeps its even borders: where it needs a vertex

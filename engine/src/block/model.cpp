@@ -105,7 +105,7 @@ Result<PatchSet> make_patch_set(const Shape& shape, const PatchSetOptions& optio
     Model faces;
     faces.surfaces.assign(shape.faces.begin(), shape.faces.end());
     ModelPatches patches(faces, options);
-    patches.name_edges(shape, 0);
+    patches.name_edges(shape, {}, 0);
     if (Status status = patches.add_all(fit); !status.ok()) return status;
     return std::move(patches).packed();
   });

@@ -111,19 +111,21 @@ Result<PatchSet> GatheredPatches::packed(PatchSetOptions options) && {
   return set;
 }
 
-void ModelPatches::name_edges(const Shape& shape, std::size_t first) {
+void ModelPatches::name_edges(const Shape& shape, const Affine& placement, std::size_t first) {
   if (shape.edges.empty() || !options_.trims) return;
   faces_.resize(first + shape.faces.size());
   for (std::size_t k = 0; k < shape.faces.size(); ++k)
     faces_[first + k] = {&shape.faces[k], static_cast<std::uint32_t>(edges_.edges.size())};
-  const auto vertex = [&](std::uint32_t id) { return id == no_id ? no_id : edges_.vertex_count + id; };
+  const auto first_vertex = static_cast<std::uint32_t>(edges_.vertices.size());
+  const auto vertex = [&](std::uint32_t id) { return id == no_id ? no_id : first_vertex + id; };
   for (const BrepEdge& edge : shape.edges)
     edges_.edges.push_back({edge.range, vertex(edge.start), vertex(edge.end), edge.degenerate});
-  edges_.vertex_count += static_cast<std::uint32_t>(shape.vertices.size());
+  for (const BrepVertex& of : shape.vertices) edges_.vertices.push_back(placement.point(of.position));
 }
 
 void ModelPatches::name_edges() {
-  for (const Instance& instance : model_.instances) name_edges(model_.shapes[instance.shape], instance.first_surface);
+  for (const Instance& instance : model_.instances)
+    name_edges(model_.shapes[instance.shape], instance.placement, instance.first_surface);
 }
 
 Status ModelPatches::add(PatchGrid grid) {

@@ -62,8 +62,9 @@ class ModelPatches {
   /// The model must outlive this object. `options`: those of the set.
   ModelPatches(const Model& model, const PatchSetOptions& options) : model_(model), options_(options) {}
 
-  /// States that the surfaces from `first` on are the faces of a shape, which must outlive this object.
-  void name_edges(const Shape& shape, std::size_t first);
+  /// States that the surfaces from `first` on are the faces of a shape, placed in the model. It must outlive this
+  /// object.
+  void name_edges(const Shape& shape, const Affine& placement, std::size_t first);
   /// Does so for all instances of the model.
   void name_edges();
   /// Adds the next surface's patches.

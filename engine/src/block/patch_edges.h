@@ -7,6 +7,7 @@
 #include "tessera/brep.h"
 #include "tessera/curve.h"
 #include "tessera/detail/shared.h"
+#include "tessera/geometry.h"
 #include "tessera/trim_loop.h"
 #include "tessera/trim_region.h"
 
@@ -27,7 +28,7 @@ struct PatchEdges {
     std::vector<std::uint32_t> patches;   ///< by place in the region's grid: the patch, or no_id where it is left out
   };
   std::vector<Edge> edges;
-  std::uint32_t vertex_count = 0;
+  std::vector<Vec3> vertices;  ///< where the shapes state them, in the model
   std::vector<Face> faces;
 };
 

@@ -67,7 +67,7 @@ class EdgeCurves {
 
   std::size_t edge_count() const { return edges_->edges.size(); }
   const PatchEdges::Edge& edge(std::size_t k) const { return edges_->edges[k]; }
-  std::size_t vertex_count() const { return edges_->vertex_count; }
+  std::size_t vertex_count() const { return edges_->vertices.size(); }
   /// Returns the curves of an edge, the longest first.
   std::vector<EdgeCurve> of(std::size_t edge) const;
   /// Whether more than one curve runs along an edge.

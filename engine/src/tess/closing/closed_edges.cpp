@@ -145,7 +145,7 @@ class Closer {
   }
 
   void join() {
-    sets_.emplace(count_ + set_.edges->vertex_count);
+    sets_.emplace(count_ + set_.edges->vertices.size());
     for (const auto& [a, b] : same_) sets_->unite(a, b);
     for (const EdgePoint& point : points_.points) {
       if (is_open_[point.edge]) continue;
@@ -248,7 +248,7 @@ class Closer {
     // Vertices where no faces meet stay: they may be welded. A place gets the number of its root first.
     std::vector<std::uint32_t>& first = out_.first_members;
     first.assign(1, 0);
-    places_.assign(count_ + set_.edges->vertex_count, none);
+    places_.assign(count_ + set_.edges->vertices.size(), none);
     for (const EdgePoint& point : points_.points) {
       if (is_open_[point.edge] || !runs_.meet(point.edge)) continue;
       std::uint32_t& place = places_[sets_->find(of_points_[point.first]).member];
@@ -278,6 +278,7 @@ class Closer {
       if (const std::uint32_t place = places_[k]; place != none) boxes[place].extend(own_[k]);
     out_.places.reserve(boxes.size());
     for (const Box3& box : boxes) out_.places.push_back(box.centre());
+    put_at_vertices(boxes);
     out_.gaps.assign(set_.edges->edges.size(), 0);
     for (const EdgePoint& point : points_.points) {
       if (is_open_[point.edge]) continue;
@@ -294,6 +295,22 @@ class Closer {
     for (std::size_t k = 0; k < gaps_.size(); ++k) {
       const std::uint32_t low = places_[gaps_[k][0]], high = places_[gaps_[k][1]];
       out_.closed_segments += std::int64_t{low == high && low != none} - !points_.gaps[k].begins();
+    }
+  }
+
+  /// Moves places to the vertices that the shape states, where the faces' points lie around these. Once edits have moved
+  /// the faces away, they do not.
+  void put_at_vertices(std::span<const Box3> boxes) {
+    constexpr double slack = 1e-3;  // of the box, which is flat where faces agree
+    const std::span<const Vec3> vertices = set_.edges->vertices;
+    for (std::uint32_t k = 0; k < vertices.size(); ++k) {
+      const std::uint32_t member = sets_->find(count_ + k).member;
+      const std::uint32_t place = member < count_ ? places_[member] : none;
+      if (place == none) continue;
+      const Vec3 at = vertices[k] - set_.origin;
+      Box3 box = boxes[place];
+      box.extend(at);
+      if (box.diagonal() <= (1 + slack) * boxes[place].diagonal()) out_.places[place] = at;
     }
   }
 

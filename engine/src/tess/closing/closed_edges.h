@@ -23,7 +23,8 @@ struct ClosedEdges {
   struct Member {
     std::uint32_t patch, vertex;
   };
-  /// Vertices grouped by place. All vertices of a place get one position: the centre of the box of their own.
+  /// Vertices grouped by place. All vertices of a place get one position: the centre of the box of their own, or a vertex
+  /// of the shape in it.
   std::vector<Member> members;
   std::vector<std::uint32_t> first_members;  ///< by place, and their number at the end
   std::vector<Vec3> places;                  ///< positions relative to the set's origin
