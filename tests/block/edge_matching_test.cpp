@@ -178,6 +178,23 @@ TEST(EdgeMatching, NarrowSlitsAreClosed) {
   EXPECT_EQ(counts_of(with_slit(1e-9)), (Counts{{0, 2}, {1, 4}, {2, 1}}));
 }
 
+/// A face narrower than the distance, alone or between two wide ones, keeps its area: its sides stay two edges.
+TEST(EdgeMatching, NarrowFacesAreNoSlits) {
+  constexpr double distance = 1e-3;
+  for (const double width : {0.07, 0.1, 0.3, 0.9}) {
+    const double w = width * distance;
+    const ModelSurface strip = quad({0, 0, 0}, {1, 0, 0}, {1, w, 0}, {0, w, 0});
+    const ModelSurface below = quad({0, -1, 0}, {1, -1, 0}, {1, 0, 0}, {0, 0, 0}),
+                       above = quad({0, w, 0}, {1, w, 0}, {1, 1, 0}, {0, 1, 0});
+    EXPECT_EQ(counts_of(joined({strip}, distance)), (Counts{{1, 4}})) << width;
+    EXPECT_EQ(counts_of(joined({below, strip, above}, distance)), (Counts{{1, 8}, {2, 2}})) << width;
+    ModelSurface trimmed = quad({-1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-1, 1, 0});  // parameters from 0 to 1
+    trimmed.trims =
+        std::vector<TrimLoop>{polygon({{0.2, 0.5, 0}, {0.6, 0.5, 0}, {0.6, 0.5 + w / 2, 0}, {0.2, 0.5 + w / 2, 0}})};
+    EXPECT_EQ(counts_of(joined({trimmed}, distance)), (Counts{{1, 4}})) << width;
+  }
+}
+
 TEST(EdgeMatching, ThreeFacesMeetInOneEdge) {
   const auto fan = [](double gap) {
     return joined({quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}), quad({1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}),

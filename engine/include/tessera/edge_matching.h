@@ -23,7 +23,8 @@ namespace tessera::inline abi_0_1 {
 /// near each other, and whose points are within the distance of each other's nearest points, as sampled, become one
 /// edge, nearest pairs first. A third piece joins two that are an edge only within an eighth of the distance, so it
 /// counts where three faces meet and not where a strip is as narrow as that. Pieces of one face may be one edge: seams,
-/// and slits narrower than the distance. Points of the ends become one vertex, in the middle of their box.
+/// and slits narrower than the distance. The two sides of a face that is as narrow stay apart: it would vanish. Points
+/// of the ends become one vertex, in the middle of their box.
 ///
 /// Result: the shape with the same faces, in their order.
 /// - Each edge has the parameter of one of its curves, the leading one, which the geometry of the pieces alone decides,

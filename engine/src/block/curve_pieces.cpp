@@ -48,6 +48,7 @@ class PairMeasure {
       : a_{&a, &free.curves[a.curve].curve},
         b_{&b, &free.curves[b.curve].curve},
         turned_(turned),
+        is_one_face_(free.curves[a.curve].use.face == free.curves[b.curve].use.face),
         reach_(std::min(a.reach, b.reach)) {}
 
   /// Empty if they are out of reach, or run otherwise.
@@ -57,6 +58,12 @@ class PairMeasure {
     const std::optional<double> back = one_way(b_, a_);
     if (!back) return {};
     return std::max(*forth, *back);
+  }
+  /// Whether their face lies between them, if they are within reach.
+  bool is_strip() const {
+    const double middle = mixed(a_.piece->range, 0.5);
+    return is_one_face_ &&
+           a_.curve->has_strip(middle, *b_.curve, b_.curve->nearest(a_.piece->points[1], b_.piece->range).t, reach_);
   }
 
  private:
@@ -88,7 +95,7 @@ class PairMeasure {
   }
 
   Part a_, b_;
-  bool turned_;
+  bool turned_, is_one_face_;
   double reach_;
 };
 
@@ -157,9 +164,11 @@ std::vector<PiecePair> list_pairs(const FreeCurves& free, std::span<const CurveP
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   std::vector<PiecePair> pairs;
-  for (const auto& [a, b, turned] : candidates)
-    if (const std::optional<double> distance = PairMeasure(free, pieces[a], pieces[b], turned).distance())
-      pairs.push_back({a, b, turned, *distance});
+  for (const auto& [a, b, turned] : candidates) {
+    const PairMeasure measure(free, pieces[a], pieces[b], turned);
+    if (const std::optional<double> distance = measure.distance())
+      pairs.push_back({a, b, turned, *distance, measure.is_strip()});
+  }
   return pairs;
 }
 

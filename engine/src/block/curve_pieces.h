@@ -32,6 +32,7 @@ struct PiecePair {
   std::uint32_t a, b;  ///< a < b
   bool turned;         ///< whether they run in opposite directions
   double distance;     ///< the largest from a point of one to the nearest of the other, as sampled
+  bool is_strip;       ///< whether their face lies between them, so that it would vanish if they were one edge
 };
 
 /// Lists all pairs of pieces within reach. Of pieces with very many neighbours the nearest 16 pairs by their ends are

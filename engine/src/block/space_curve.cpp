@@ -1,11 +1,13 @@
 #include "block/space_curve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "block/coedge_parameter.h"
+#include "tessera/trim_region.h"
 
 namespace tessera::inline abi_0_1 {
 namespace {
@@ -99,6 +101,17 @@ FacePoint SpaceCurve::evaluate(double t) const {
   if (point) return *point;
   *failure_ = in_face(*shape_, face_, point.status());
   return {};
+}
+
+bool SpaceCurve::has_strip(double t, const SpaceCurve& other, double s, double reach) const {
+  const ModelSurface& face = shape_->faces[face_];
+  const Result<Curve> across = Curve::bezier(std::array{position(*curve_, t), position(*other.curve_, s)});
+  if (!across) return false;
+  const Result<FacePoint> middle = face_point(face, *across, 0.5);
+  if (!middle || !(length(middle->position - at(t)) <= reach)) return false;
+  const Result<TrimRegion> kept = TrimRegion::make(edge_loops(shape_->faces[face_]), tessera::domain(face.surface));
+  const Vec3 uv = position(*across, 0.5);
+  return kept && kept->locate(uv.x, uv.y) == TrimSide::inside;
 }
 
 /// Appends the samples after `from` up to `to`.

@@ -47,6 +47,9 @@ class SpaceCurve {
   /// The nearest point of the curve between two parameters, by Newton's method from the nearest chord; 5 to 10
   /// evaluations.
   Nearest nearest(const Vec3& p, const Interval& within) const;
+  /// Whether the face is a strip between this curve at t and another one of it at s: the point at the mean of their
+  /// parameters is kept by its loops, and within `reach`.
+  bool has_strip(double t, const SpaceCurve& other, double s, double reach) const;
   /// Finds the nearest point by Newton's method, from a parameter near it.
   Nearest nearest_from(const Vec3& p, double t, const Interval& within) const;
 
