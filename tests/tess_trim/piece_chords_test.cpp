@@ -2,6 +2,7 @@
 
 #include "tess/trimmed/piece_chords.h"
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -33,9 +34,9 @@ struct Chords {
   std::vector<double> parameters;
   double sliver = 0;
 };
-Chords chords_of(const std::vector<TrimPiece>& pieces, double most) {
+Chords chords_of(const std::vector<TrimPiece>& pieces, double most, const std::atomic<bool>* cancel = nullptr) {
   Chords chords;
-  const ChordLimits limits{.sliver = most, .box = {10, 10}, .speed = {1, 1, 0}};
+  const ChordLimits limits{.sliver = most, .box = {10, 10}, .speed = {1, 1, 0}, .cancel = cancel};
   chords.sliver = PieceChords().append(pieces, limits, chords.points, chords.parameters);
   return chords;
 }
@@ -49,6 +50,13 @@ TEST(PieceChords, OfAnArcAreAsFewAsItsSagittasAllow) {
     EXPECT_EQ(chords_of({arc(0, piece_chords_pi / 2)}, sagitta * (1 - 1e-9)).points.size(),
               static_cast<std::size_t>(2 * count));
   }
+}
+
+TEST(PieceChords, AreNotHalvedOnceTheCallIsCancelled) {
+  std::atomic<bool> cancel = false;
+  EXPECT_GT(chords_of({arc(0, pi / 2)}, 1e-9, &cancel).points.size(), 1000u);
+  cancel = true;
+  EXPECT_EQ(chords_of({arc(0, pi / 2)}, 1e-9, &cancel).points.size(), 1u);
 }
 
 TEST(PieceChords, SpanPiecesThatTurnBackALittle) {

@@ -17,7 +17,7 @@ constexpr std::size_t edges_per_task = 16;
 Status CertifiedPlanner::find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan, EdgeStops& stops,
                                     const Execution& execution) const {
   std::vector<ChordLimits> of_cuts;
-  for (const CutRoom& room : rooms) of_cuts.push_back(chord_limits(room.limits));
+  for (const CutRoom& room : rooms) of_cuts.emplace_back(chord_limits(room.limits)).cancel = execution.cancel;
   const auto segments = [&](std::uint32_t patch, Side side) -> std::optional<Segments> {
     if (set_->trims && set_->trims->is_cut[patch]) return {};
     return plan.divisions_[patch].border[static_cast<std::size_t>(side)];

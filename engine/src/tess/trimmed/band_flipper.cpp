@@ -34,17 +34,19 @@ bool BandFlipper::is_ccw(const Triangle& triangle) const {
 
 void BandFlipper::run(
     std::vector<Triangle>& triangles, std::size_t first,
-    FunctionRef<bool(const Triangle& a, const Triangle& b, const Triangle& new_a, const Triangle& new_b)> may_flip) {
+    FunctionRef<bool(const Triangle& a, const Triangle& b, const Triangle& new_a, const Triangle& new_b)> may_flip,
+    const std::atomic<bool>* cancel) {
   std::vector<double> tilts;
   std::vector<std::uint32_t> turned;
-  for (std::size_t t = first; t < triangles.size(); ++t) {
+  const auto is_cancelled = [&] { return cancel && cancel->load(std::memory_order_relaxed); };
+  for (std::size_t t = first; t < triangles.size() && !is_cancelled(); ++t) {
     tilts.push_back(tilt(triangles[t]));
     if (tilts.back() > max_tilt) turned.push_back(static_cast<std::uint32_t>(t));
   }
   if (turned.empty()) return;
   mesh_.link(triangles, first);
   const auto tilt_of = [&](std::uint32_t t) -> double& { return tilts[t - first]; };
-  while (!turned.empty()) {
+  while (!turned.empty() && !is_cancelled()) {
     const std::uint32_t t = turned.back();
     turned.pop_back();
     if (!(tilt_of(t) > max_tilt)) continue;

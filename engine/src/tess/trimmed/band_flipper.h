@@ -1,6 +1,7 @@
 #pragma once
 // Turns the edges of a cut patch's band, so that its triangles face as the surface does.
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -25,13 +26,14 @@ class BandFlipper {
 
   /// Flips edges of the triangles from `first` on while that lowers the larger tilt of two triangles, where it is above
   /// 1 - cos(30 degrees). Triangles stay counter-clockwise in the parameters. `may_flip`: whether two triangles may be
-  /// replaced by two others.
+  /// replaced by two others. `cancel`: looked at for each triangle, unless null; if cancelled, it stops.
   ///
   /// It ends: the list of all tilts, the largest first, gets smaller with each flip, and there are finitely many
   /// triangulations.
   void run(
       std::vector<Triangle>& triangles, std::size_t first,
-      FunctionRef<bool(const Triangle& a, const Triangle& b, const Triangle& new_a, const Triangle& new_b)> may_flip);
+      FunctionRef<bool(const Triangle& a, const Triangle& b, const Triangle& new_a, const Triangle& new_b)> may_flip,
+      const std::atomic<bool>* cancel);
 
  private:
   struct Place {

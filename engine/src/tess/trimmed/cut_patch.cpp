@@ -86,7 +86,7 @@ void unfold(const TrimmedPatch& limits, double sliver, const ChordBound& chord, 
     });
   };
   PatchPoints points(*limits.rounding.patch, limits.rounding.origin);
-  BandFlipper(points, out.vertices).run(out.triangles, first, may_flip);
+  BandFlipper(points, out.vertices).run(out.triangles, first, may_flip, limits.cancel);
 }
 
 }  // namespace

@@ -236,7 +236,8 @@ void PieceChords::divide(const Net& net, double from, double to, int depth) {
   const double balance = this->balance(net), half = balance / (1 + balance);
   cross *= reach_of(net, balance);
   Sliver sliver = sliver_of(chord, cross, error_, {});
-  if (sliver.is_fine || depth == max_depth) return put(b, to, sliver);
+  const bool is_cancelled = limits_->cancel && limits_->cancel->load(std::memory_order_relaxed);
+  if (sliver.is_fine || depth == max_depth || is_cancelled) return put(b, to, sliver);
   Net low, high;
   split(net, half, low, high);
   cross = 0;

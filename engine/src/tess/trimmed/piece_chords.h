@@ -2,6 +2,7 @@
 // Lays chords along the pieces of trimming loops.
 
 #include <array>
+#include <atomic>
 #include <limits>
 #include <span>
 #include <vector>
@@ -20,6 +21,7 @@ struct ChordLimits {
   /// The largest sliver over the length of its chord, both in these speeds: an eighth of the angle by which an arc of a
   /// circle turns.
   double bend = std::numeric_limits<double>::infinity();
+  const std::atomic<bool>* cancel = nullptr;  ///< once it is set, chords are not halved any more
 };
 
 /// Parameters of a caller's curve where chords must end.

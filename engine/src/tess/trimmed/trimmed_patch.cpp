@@ -29,7 +29,8 @@ ChordLimits chord_limits(const TrimmedPatch& patch) {
           {patch.chord_share * shortest(d.u0, d.u1, patch.segments.u),
            patch.chord_share * shortest(d.v0, d.v1, patch.segments.v)},
           patch.speed.over(d.u1 - d.u0, d.v1 - d.v0),
-          patch.bend};
+          patch.bend,
+          patch.cancel};
 }
 
 void PatchCutter::begin(const TrimmedPatch& patch) {
