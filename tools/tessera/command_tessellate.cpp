@@ -181,8 +181,10 @@ void warn_of_surfaces(const Loaded& loaded, const Meshed& made) {
   for (const std::size_t surface : made.crossed)
     say(surface, "its trimming loops cannot be made a polygon: parts of it are left out");
   for (const RoughSurface& rough : made.rough)
-    say(rough.surface, "its trimming loops are too rough for the tolerance: its mesh is proven to lie within " +
-                           readable(rough.bound, 3));
+    say(rough.surface,
+        "it cannot keep the tolerance, because of rough trimming loops, the rounding of positions, or the limit of "
+        "segments: its mesh is proven to lie within " +
+            readable(rough.bound, 3));
 }
 
 Status run_tessellate(const Job& job, const TessellateOptions& options, const CommonOptions& common, Timings& timings) {

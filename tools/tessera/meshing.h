@@ -13,7 +13,7 @@
 
 namespace tessera::cli {
 
-/// A surface whose trimming loops are too rough for the tolerances.
+/// A surface with patches_beyond_tolerance().
 struct RoughSurface {
   std::size_t surface;
   double bound;  ///< the largest distance of its mesh
@@ -39,7 +39,7 @@ struct Meshed {
   double bound = 0;              ///< largest distance of the file's mesh and surfaces; 0: unknown
   double rounding = 0;           ///< the part of the bound that comes from the numbers of the file
   bool has_doubles = false;      ///< whether the file holds positions in double
-  bool keeps_tolerances = true;  ///< false: the file's numbers are too coarse for them, or loops too rough
+  bool keeps_tolerances = true;  ///< false: the file's numbers are too coarse for them, or surfaces beyond them
   double gap = 0;                ///< by which faces of the file fail to meet, beside the bound
   bool proven = true;            ///< false if sampled: callables fitted without bounds on their derivatives
 };

@@ -256,11 +256,10 @@ class Tessellation {
   /// Errors:
   /// - invalid_argument (neither rates nor a tolerance of any kind, or both; a rate out of range; a tolerance that is
   ///   not above 0)
-  /// - invalid_argument (a tolerance that a patch's rounding, welding or the fit error exceeds already, or nearly; the
-  ///   message names about the smallest tolerance that has a plan)
+  /// - invalid_argument (tolerances that no patch keeps, see patches_beyond_tolerance(); the message names about the
+  ///   smallest one that all keep, or how many triangles it takes)
   /// - invalid_argument (a view without a picture; a weld, a crease angle or `spare` out of range)
-  /// - invalid_argument (more triangles or vertices than the limits, or more than 4096 segments along a parameter; the
-  ///   message says how many triangles the mesh takes)
+  /// - invalid_argument (more triangles or vertices than the limits; the message says how many triangles the mesh takes)
   /// - invalid_argument (max_triangles below what one cell per patch takes)
   /// - unsupported (the set has no float Bernstein blocks; it has cut patches, and rates are wanted)
   /// - isa_unavailable, cancelled
@@ -306,8 +305,9 @@ class Tessellation {
   std::size_t open_edges() const;
   /// Returns the patches that have no triangles, because their trimming loops could not be made a polygon.
   std::span<const std::uint32_t> crossed_patches() const;
-  /// Returns the cut patches whose bounds exceed the tolerances, by growing patch: their loops are too rough, for
-  /// example because curves leave gaps. They are meshed as finely as helps, and all bounds state what they keep.
+  /// Returns the patches whose bounds exceed the tolerances, by growing patch: those whose loops are too rough, for
+  /// example because curves leave gaps; those whose rounding, welding or fit error takes all of a tolerance; those that
+  /// need more than 4096 segments along a parameter. They are meshed as finely as helps; all bounds say what they keep.
   std::span<const std::uint32_t> patches_beyond_tolerance() const;
   MeshCapacity capacity() const;  ///< the exact sizes of the mesh
   /// Returns where a patch's vertices, triangles and quads begin, or all end. Requires share_vertices to be false.

@@ -42,7 +42,8 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
   planned.f64_patches.assign(set.patch_count(), 1);
   const Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), planned, {});
   if (!planner) return planner.status();
-  const bool keeps = !planner->is_rough(tolerance) && planner->plan(tolerance, options.max_triangles, {});
+  const auto is_kept = [&](const Result<CertifiedPlan>& plan) { return plan && plan->beyond().empty(); };
+  const bool keeps = !planner->is_rough(tolerance) && is_kept(planner->plan(tolerance, options.max_triangles, {}));
   const auto nearest = keeps ? std::optional<double>() : planner->nearest_tolerance(options.max_triangles);
   if (!keeps && !nearest) return refusal;
   return {refusal.code(), refusal.message() + "; positions in double keep " + (keeps ? "it" : text(*nearest)),

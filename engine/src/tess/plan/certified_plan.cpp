@@ -9,7 +9,6 @@
 #include <string>
 
 #include "base/text.h"
-#include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "tess/bounds/graded_segments.h"
 #include "tess/bounds/task_size.h"
@@ -166,7 +165,7 @@ std::optional<Rates> CertifiedPlanner::rates_for(const CellLimits& limits, int m
 }
 
 CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Request& request, int most) const {
-  const double tolerance = request.tolerance;
+  const double tolerance = request.slack * request.tolerance, pixels = request.slack * options_.pixels;
   const double given = roundings_[patch] + fit_error_;
   const ScreenSpaceBound* const picture = options_.camera ? &pictures_[patch] : nullptr;
   std::optional<NormalTurning> turning;
@@ -174,21 +173,21 @@ CertifiedPlanner::Choice CertifiedPlanner::choose(std::size_t patch, const Reque
   const ChordBound chord = this->chord(patch);
   Choice choice;
   CellLimits limits;
-  const double distance = picture ? std::min(tolerance, picture->distance()) : tolerance;
+  const double distance = picture ? std::min(tolerance, request.slack * picture->distance()) : tolerance;
   if (!(given < distance)) choice.failure = given < tolerance ? Failure::rough_pixels : Failure::rough;
   if (std::isfinite(distance)) limits.chord = &chord;
   limits.distance = request.share * (distance - given);
   const std::optional<ChordBound> projected = picture ? picture->projected() : std::nullopt;
   if (projected) {
     limits.picture = &*projected;
-    limits.pixels = request.share * (options_.pixels - picture->moved_pixels());
+    limits.pixels = request.share * (pixels - picture->moved_pixels());
     if (!(limits.pixels > 0)) choice.failure = Failure::rough_pixels;
   }
   if (choice.failure != Failure::none) return choice;
   const bool bounded = turning && turning->bound.is_finite();
   if (bounded) {
     limits.turning = &turning->bound;
-    limits.angle = request.share * *options_.angle;
+    limits.angle = request.share * request.slack * *options_.angle;
   }
   std::optional<Rates> rates = rates_for(limits, most);
   if (rates && turning && !bounded)
@@ -264,8 +263,8 @@ Result<std::vector<ProvenSegments>> CertifiedPlanner::find_fewest(double toleran
   const auto no_others = [](PatchSegments) { return true; };
   const auto find = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      if (!shapes_[k].is_curve)
-        find_fewer(set_->patches[k], tolerance - (roundings_[k] + fit_error_), no_others, choices[k]);
+      if (const double left = tolerance - (roundings_[k] + fit_error_); !shapes_[k].is_curve && left > 0)
+        find_fewer(set_->patches[k], left, no_others, choices[k]);
   };
   if (Status status = parallel_for(choices.size(), 1, execution, find); !status.ok()) return status;
   const auto chosen = choose_together(divided_shapes(), edges_, borders_against(), choices, execution.cancel);
@@ -282,7 +281,7 @@ void CertifiedPlanner::set_segments(std::size_t patch, const ProvenSegments& pro
 }
 
 void CertifiedPlanner::choose_block(std::size_t block, const Request& request, std::span<SegmentChoices> choices,
-                                    CertifiedPlan& plan, LeastIndex& failed) const {
+                                    CertifiedPlan& plan, std::span<std::uint8_t> beyond) const {
   const std::uint32_t* patches = set_->lane_patches.data() + block * PatchSet::lanes;
   const std::size_t count = set_->lane_counts[block];
   ChordBlocks::Lanes<double> left;
@@ -293,8 +292,10 @@ void CertifiedPlanner::choose_block(std::size_t block, const Request& request, s
   ChordBlocks::Choice choice = chords_.cheapest(*set_, block, count, left, max_rate, products);
   for (std::size_t lane = 0; lane < count; ++lane) {
     const std::size_t k = patches[lane];
-    if (!(left[lane] > 0) || choice.rates[lane].u == 0) failed.add(k);
-    const ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
+    ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
+    beyond[k] = !(left[lane] > 0) || choice.rates[lane].u == 0;
+    if (beyond[k])
+      proven.segments = choose_beyond(k, request).segments, proven.distance = chord(k).distance_of(proven.segments);
     if (!choices.empty()) {
       choices[k] = SegmentChoices(proven);
     } else if (request.kept.segments.empty()) {
@@ -310,16 +311,15 @@ Status CertifiedPlanner::choose_by_distance(const Request& request, CertifiedPla
                                             const Execution& execution) const {
   const double tolerance = request.tolerance;
   const KeptSegments& kept = request.kept;
-  LeastIndex failed;
+  std::vector<std::uint8_t> beyond(shapes_.size(), 0);
   std::vector<SegmentChoices> choices(request.fewest ? shapes_.size() : 0);
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) choose_block(block, request, choices, plan, failed);
+    for (std::size_t block = begin; block < end; ++block) choose_block(block, request, choices, plan, beyond);
   };
   const Execution quiet{.cancel = execution.cancel}, &first = choices.empty() ? execution : quiet;
   if (Status status = parallel_for(set_->lane_counts.size(), blocks_per_task, first, choose_some); !status.ok())
     return status;
-  if (failed.found()) return refusal(choose(failed.index(), {tolerance}, max_rate).failure, failed.index(), request);
-  if (choices.empty()) return {};
+  if (Status status = keep_beyond(request, beyond, plan); !status.ok() || choices.empty()) return status;
   const auto fewest = find_fewest(tolerance, std::move(choices), execution);
   if (!fewest) return fewest.status();
   for (std::size_t k = 0; k < fewest->size(); ++k) {
@@ -341,11 +341,12 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
   if (!options_.angle && !options_.camera) return choose_by_distance(request, plan, execution);
   if (options_.angle) plan.angles_.resize(patches);
   if (options_.camera) plan.pixels_.resize(patches);
-  LeastIndex failed;
+  std::vector<std::uint8_t> beyond(patches, 0);
   const auto choose_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Choice choice = choose(k, request, max_rate);
-      if (choice.failure != Failure::none) failed.add(k);
+      Choice choice = choose(k, request, max_rate);
+      beyond[k] = choice.failure != Failure::none;
+      if (beyond[k]) choice = choose_beyond(k, request);
       plan.segments_[k] = choice.segments;
       plan.straddles_[k] = choice.anywhere;
       plan.bounds_[k] = rounded_up(choice.bound);
@@ -354,8 +355,7 @@ Status CertifiedPlanner::choose_rates(const Request& request, CertifiedPlan& pla
     }
   };
   if (Status status = parallel_for(patches, patches_per_task, execution, choose_some); !status.ok()) return status;
-  if (!failed.found()) return {};
-  return refusal(choose(failed.index(), request, max_rate).failure, failed.index(), request);
+  return keep_beyond(request, beyond, plan);
 }
 
 Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execution& execution) const {

@@ -27,8 +27,6 @@
 
 namespace tessera::inline abi_0_1 {
 
-class LeastIndex;
-
 inline constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  ///< the limit of 32-bit indices
 
 /// Returns the largest distance between a float vertex, relative to the set's origin, and the surface's point.
@@ -50,7 +48,7 @@ class CertifiedPlan {
   std::span<const CutPatch> cuts() const { return rare_ ? rare_->cuts : std::span<const CutPatch>(); }
   /// Cut patches without triangles, because their chords cross.
   std::span<const std::uint32_t> crossed() const { return rare_ ? rare_->crossed : std::span<const std::uint32_t>(); }
-  /// Cut patches whose bounds exceed the limits, by growing patch.
+  /// Patches whose bounds exceed the limits, by growing patch.
   std::span<const std::uint32_t> beyond() const { return rare_ ? rare_->beyond : std::span<const std::uint32_t>(); }
   /// The vertices that faces share along edges; null if the set has no edges.
   const ClosedEdges* closed() const { return rare_ && rare_->closed ? &*rare_->closed : nullptr; }
@@ -118,6 +116,8 @@ class CertifiedPlan {
     if (!lines.empty() && !rare_) rare_ = std::make_unique<Rare>();
     if (rare_) rare_->lines = std::move(lines);
   }
+  /// Sets beyond(). `flags`: by patch.
+  void set_beyond(std::span<const std::uint8_t> flags);
   /// Counts open_edges() of a mesh with cut patches. `edges`: those of the planner, after welding.
   void count_open_edges_beside_loops(const SharedEdges& edges);
   std::size_t owned_ring_count(std::size_t patch, std::uint32_t sides = 4) const;
@@ -136,7 +136,7 @@ class CertifiedPlan {
     std::optional<ClosedEdges> closed;
     std::vector<LinePatch> lines;
   };
-  std::unique_ptr<Rare> rare_;  ///< null if no patch is cut, none is a line, and no vertices come from doubles
+  std::unique_ptr<Rare> rare_;  ///< null if none of these are known of any patch
   std::uint32_t open_edges_ = 0;
   bool has_f64_positions_ = false;
   std::vector<std::uint8_t> straddles_;   ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
@@ -231,6 +231,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     /// A limit on the triangles of each cut patch, and for tolerances that messages propose.
     std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
     double share = 1;      ///< the part of what the limits leave that cells may take
+    double slack = 1;      ///< the factor by which the limits of a patch may be exceeded
     bool uniform = false;  ///< whether segments are of one length
     /// By cut patch: the part of the tolerance that it may take before edges are closed; empty: all of it.
     std::span<const double> cut_shares = {};
@@ -265,13 +266,18 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Bounds what the camera sees of the patches of one block; needs their roundings.
   void bound_pictures(std::size_t block);
   Choice choose(std::size_t patch, const Request& request, int most) const;
+  /// Chooses for a patch that cannot keep its limits: within the least multiple of them, in powers of 2, that leaves
+  /// room above its vertices and is kept.
+  Choice choose_beyond(std::size_t patch, const Request& request) const;
+  /// States the patches beyond their limits. Errors: invalid_argument (no patch keeps them).
+  Status keep_beyond(const Request& request, std::span<const std::uint8_t> beyond, CertifiedPlan& plan) const;
   std::optional<Rates> rates_for(const CellLimits& limits, int most) const;
   /// Chooses rates and bounds of all patches.
   Status choose_rates(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   void set_segments(std::size_t patch, const ProvenSegments& proven, CertifiedPlan& plan) const;
   /// Chooses rates of one block's patches. They go to `choices` if there are any, otherwise to the plan.
   void choose_block(std::size_t block, const Request& request, std::span<SegmentChoices> choices, CertifiedPlan& plan,
-                    LeastIndex& failed) const;
+                    std::span<std::uint8_t> beyond) const;
   /// Chooses rates and bounds, block by block, if a distance is the only limit.
   Status choose_by_distance(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones where possible.

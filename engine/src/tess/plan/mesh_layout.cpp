@@ -14,6 +14,13 @@ void CertifiedPlan::set_f64_patches(std::span<const std::uint8_t> patches) {
   rare_->f64_patches.assign(patches.begin(), patches.end());
 }
 
+void CertifiedPlan::set_beyond(std::span<const std::uint8_t> flags) {
+  if (!rare_) rare_ = std::make_unique<Rare>();
+  rare_->beyond.clear();
+  for (std::uint32_t patch = 0; patch < flags.size(); ++patch)
+    if (flags[patch]) rare_->beyond.push_back(patch);
+}
+
 void CertifiedPlan::lay_out() {
   const std::size_t patches = divisions_.size();
   for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);

@@ -1,4 +1,4 @@
-// Finds tolerances that the rounding of vertices leaves no room for, and makes the messages about them.
+// Finds tolerances that patches cannot keep, divides such patches, and makes the messages about them.
 
 #include <algorithm>
 #include <array>
@@ -90,6 +90,31 @@ std::optional<double> CertifiedPlanner::nearest_tolerance(std::uint64_t max_tria
     if (found && found->capacity().triangles <= max_triangles && found->capacity().vertices <= max_vertices)
       return tolerance;
   }
+  return {};
+}
+
+// Chords far below the errors of the vertices gain nothing. Grids of cut patches stay within a few ten megabytes.
+CertifiedPlanner::Choice CertifiedPlanner::choose_beyond(std::size_t patch, const Request& request) const {
+  constexpr int max_rate_of_cut = 512;
+  const double given = 1.25 * (roundings_[patch] + fit_error_);
+  Request relaxed = request;
+  relaxed.fewest = false, relaxed.kept = {};
+  for (relaxed.slack = 2;; relaxed.slack *= 2) {  // infinite limits are kept
+    if (!(relaxed.slack * request.tolerance > given)) continue;
+    const Choice choice = choose(patch, relaxed, is_cut(patch) ? max_rate_of_cut : max_rate);
+    if (choice.failure == Failure::none || std::isinf(relaxed.slack)) return choice;
+  }
+}
+
+// A tolerance that some patches keep is that of the mesh, and the others state their bounds. One that none keeps is a
+// mistake.
+Status CertifiedPlanner::keep_beyond(const Request& request, std::span<const std::uint8_t> beyond,
+                                     CertifiedPlan& plan) const {
+  const auto count = std::ranges::count(beyond, 1);
+  if (count == 0) return {};
+  const auto first = static_cast<std::size_t>(std::ranges::find(beyond, 1) - beyond.begin());
+  if (count == std::ssize(beyond)) return refusal(choose(first, request, max_rate).failure, first, request);
+  plan.set_beyond(beyond);
   return {};
 }
 

@@ -51,7 +51,7 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
                                               const Execution& execution) {
   planner_.set_ = &of.set;
   is_redivided_ = false;
-  is_unknown_ = moves_line_patches(of);
+  is_unknown_ = moves_line_patches(of) || !of.plan.beyond().empty();
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (const std::uint32_t block : std::span(touched_.blocks).subspan(begin, end - begin)) {
       pack(block);

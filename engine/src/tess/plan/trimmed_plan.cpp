@@ -189,7 +189,8 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
   plan.rare_->trims = set_->trims;
   plan.rare_->cuts.resize(cuts.size());
-  plan.rare_->crossed.clear(), plan.rare_->beyond.clear();
+  plan.rare_->crossed.clear();
+  std::erase_if(plan.rare_->beyond, [this](std::uint32_t patch) { return is_cut(patch); });
   find_same_borders(plan);
   const std::vector<std::uint8_t> is_shared = shared_edges();
   CutShares shares(cuts.size(), cell_share, request.cut_shares);
@@ -224,6 +225,7 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
     if (plan.cuts()[c].is_crossed) plan.rare_->crossed.push_back(cuts[c].patch);
     if (shares.is_beyond(c)) plan.rare_->beyond.push_back(cuts[c].patch);
   }
+  std::ranges::sort(plan.rare_->beyond);
   return {};
 }
 
