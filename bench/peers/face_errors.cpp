@@ -15,14 +15,16 @@ constexpr double mixes[][3] = {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1. 
 
 }  // namespace
 
-std::vector<SurfaceTriangle> triangles_on_faces(const TrimmedCase& one, const PatchSet& set, const Mesh& mesh) {
+std::vector<SurfaceTriangle> triangles_on_faces(const TrimmedCase& one, const PatchSet& set, const Mesh& mesh,
+                                                std::size_t first, const Affine& placement) {
   std::vector<SurfaceTriangle> triangles = triangles_of(mesh);
   for (SurfaceTriangle& triangle : triangles) {
     const PatchSource& source = set.source(triangle.face);
     const Domain& d = source.domain;
-    triangle.face = source.surface;
+    triangle.face = first + source.surface;
+    for (Vec3& corner : triangle.corners) corner = placement.point(corner);
     for (auto& [u, v] : triangle.parameters) {
-      const Parameters at = one.faces[source.surface]->theirs({d.u0 + u * (d.u1 - d.u0), d.v0 + v * (d.v1 - d.v0)});
+      const Parameters at = one.faces[triangle.face]->theirs({d.u0 + u * (d.u1 - d.u0), d.v0 + v * (d.v1 - d.v0)});
       u = at[0], v = at[1];
     }
   }

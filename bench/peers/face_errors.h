@@ -14,8 +14,9 @@
 namespace tessera::bench {
 
 /// The triangles of a Tessera mesh: `face` is the index into the case's faces, parameters are OpenCASCADE's. The mesh
-/// needs parameters and patches.
-std::vector<SurfaceTriangle> triangles_on_faces(const TrimmedCase& one, const PatchSet& set, const Mesh& mesh);
+/// needs parameters and patches. `set`: of the faces from `first` on, in a space that `placement` leads out of.
+std::vector<SurfaceTriangle> triangles_on_faces(const TrimmedCase& one, const PatchSet& set, const Mesh& mesh,
+                                                std::size_t first = 0, const Affine& placement = {});
 
 /// The largest distances found, in both directions.
 struct FaceErrors {

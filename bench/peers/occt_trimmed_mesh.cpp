@@ -26,6 +26,7 @@
 #include <optional>
 #include <string_view>
 
+#include "peers/equal_error.h"
 #include "peers/face_errors.h"
 #include "peers/interleaved.h"
 #include "peers/occt_shape.h"
@@ -38,11 +39,16 @@ namespace tessera::bench {
 namespace {
 
 constexpr char usage[] =
-    "tessera_peer_occt_trimmed_mesh [--only NAME] [--points N] [--no-sides] [--no-search] [FILE...]\n\n"
+    "tessera_peer_occt_trimmed_mesh [--only NAME] [--points N] [--no-sides] [--no-search] [FILE...]\n"
+    "tessera_peer_occt_trimmed_mesh --parts [--only NAME] [--points N] [--relative R] [--angle A] [FOLDER...]\n\n"
     "Meshes of trimmed CAD files beside OpenCASCADE's at equal measured error, one thread; areas and sides of their\n"
     "faces. Without files: those of the folder TESSERA_TEST_DATA. About 10 minutes.\n"
+    "  --parts      a line for each file: Tessera's closed mesh, and OpenCASCADE's with the deflection at which its\n"
+    "               error is the same; medians at the end. Without folders: TESSERA_TEST_DATA. About an hour\n"
     "  --only NAME  files whose names contain NAME\n"
     "  --points N   measures meshes at about N points in each direction [12000]\n"
+    "  --relative R Tessera's tolerance, as a share of the size [0.001]\n"
+    "  --angle A    OpenCASCADE's angular deflection, radians [0.5]\n"
     "  --no-sides   without the check of sides\n"
     "  --no-search  at equal tolerance only\n"
     "Exit status 1 if a bound does not hold.\n";
@@ -69,7 +75,8 @@ constexpr double max_seconds = 60;  // for one of OpenCASCADE's meshes
 struct Options {
   std::string only;
   std::size_t points = 12000;
-  bool sides = true, search = true;
+  double relative = 1e-3, angle = occt_default_angle;
+  bool sides = true, search = true, parts = false;
   std::vector<std::filesystem::path> files;
 };
 
@@ -244,12 +251,16 @@ bool report(const std::filesystem::path& file, const Options& options) {
 }
 
 int run(Options options) {
-  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
-  if (options.files.empty()) {
-    const char* const data = std::getenv("TESSERA_TEST_DATA");
-    if (data == nullptr) throw std::runtime_error("name files, or set TESSERA_TEST_DATA");
-    for (const char* const file : default_files) options.files.push_back(std::filesystem::path(data) / file);
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (options.files.empty() && data == nullptr) throw std::runtime_error("name files, or set TESSERA_TEST_DATA");
+  if (options.parts) {
+    if (options.files.empty()) options.files = {data, std::filesystem::path(data) / "cad_corpus"};
+    compare_parts({options.files, options.only, options.points, options.relative, options.angle});
+    return 0;
   }
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  if (options.files.empty())
+    for (const char* const file : default_files) options.files.push_back(std::filesystem::path(data) / file);
   std::printf("Errors, tolerances and bounds are shares of the size of the model's box.\n");
   bool good = true;
   for (const std::filesystem::path& file : options.files) {
@@ -265,34 +276,53 @@ int run(Options options) {
   return good ? 0 : 1;
 }
 
+/// Reads a number above 0. Returns whether it is one; otherwise it says so.
+template <class T>
+bool read_number(std::string_view option, std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc() && end == text.data() + text.size() && value > 0) return true;
+  std::fprintf(stderr, "%s is a number above 0, not '%s'\n", option.data(), text.data());
+  return false;
+}
+
+/// Reads the arguments but --help. Returns whether they are understood; otherwise it says what is not.
+bool read_arguments(int argc, char** argv, Options& options) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view option = argv[k];
+    const bool has_value = k + 1 < argc;
+    if (option == "--no-sides") {
+      options.sides = false;
+    } else if (option == "--no-search") {
+      options.search = false;
+    } else if (option == "--parts") {
+      options.parts = true;
+    } else if (option == "--only" && has_value) {
+      options.only = argv[++k];
+    } else if (option == "--points" && has_value) {
+      if (!read_number(option, argv[++k], options.points)) return false;
+    } else if (option == "--relative" && has_value) {
+      if (!read_number(option, argv[++k], options.relative)) return false;
+    } else if (option == "--angle" && has_value) {
+      if (!read_number(option, argv[++k], options.angle)) return false;
+    } else if (option.starts_with('-')) {
+      std::fprintf(stderr, "unknown option '%s'\n%s", argv[k], usage);
+      return false;
+    } else {
+      options.files.emplace_back(option);
+    }
+  }
+  return true;
+}
+
 }  // namespace
 }  // namespace tessera::bench
 
 int main(int argc, char** argv) {
-  tessera::bench::Options options;
-  for (int k = 1; k < argc; ++k) {
+  for (int k = 1; k < argc; ++k)
     if (std::strcmp(argv[k], "--help") == 0 || std::strcmp(argv[k], "-h") == 0)
       return std::fputs(tessera::bench::usage, stdout) < 0;
-    if (std::strcmp(argv[k], "--no-sides") == 0) {
-      options.sides = false;
-    } else if (std::strcmp(argv[k], "--no-search") == 0) {
-      options.search = false;
-    } else if (std::strcmp(argv[k], "--only") == 0 && k + 1 < argc) {
-      options.only = argv[++k];
-    } else if (std::strcmp(argv[k], "--points") == 0 && k + 1 < argc) {
-      const std::string_view text = argv[++k];
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), options.points);
-      if (error != std::errc() || end != text.data() + text.size() || options.points == 0) {
-        std::fprintf(stderr, "--points is a number above 0, not '%s'\n", argv[k]);
-        return 2;
-      }
-    } else if (argv[k][0] == '-') {
-      std::fprintf(stderr, "unknown option '%s'\n%s", argv[k], tessera::bench::usage);
-      return 2;
-    } else {
-      options.files.emplace_back(argv[k]);
-    }
-  }
+  tessera::bench::Options options;
+  if (!tessera::bench::read_arguments(argc, argv, options)) return 2;
   try {
     return tessera::bench::run(std::move(options));
   } catch (const std::exception& error) {

@@ -67,7 +67,7 @@ std::size_t TrimmedCase::trimmed_faces() const {
       std::ranges::count_if(model.surfaces, [](const ModelSurface& s) { return !s.trims->empty(); }));
 }
 
-TrimmedCase read_case(const std::filesystem::path& file) {
+TrimmedCase read_case(const std::filesystem::path& file, bool expands) {
   CadFile cad = load(file);
   TrimmedCase one;
   one.name = file.filename().string();
@@ -78,7 +78,7 @@ TrimmedCase read_case(const std::filesystem::path& file) {
   std::erase_if(faces, [](const TopoDS_Shape& shape) { return shape.ShapeType() != TopAbs_FACE; });
   for (const TopoDS_Shape& face : faces) distinct.insert(face.TShape().get());
   one.distinct_faces = distinct.size();
-  if (distinct.size() < faces.size()) cad.shape = expanded(cad.shape);
+  if (expands && distinct.size() < faces.size()) cad.shape = expanded(cad.shape);
   one.shape = cad.shape;
   one.model = value_or_throw(model_of(cad, one.name));
   faces.clear();
