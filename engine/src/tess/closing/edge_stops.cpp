@@ -36,16 +36,23 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
     if (const auto along = whole(run)) add_vertices(run, set.sources[run.patch].domain, *along, stops);
   }
   sort_distinct(stops, same);
-  std::vector<double>& found = workspace.found;
-  // Coedges in the edge's direction come first, so the stops do not depend on the order of faces.
-  for (const bool reversed : {false, true}) {
-    found.clear();
+  const auto divide_along = [&](bool reversed) {
+    workspace.found.clear();
     for (const EdgeRun& run : runs)
       if (!is_whole(run) && runs_->curve(run).coedge->reversed == reversed) divide(run, limits(run.patch), workspace);
-    if (found.empty()) continue;
-    stops.insert(stops.end(), found.begin(), found.end());
+    return workspace.found.size();
+  };
+  const auto add_found = [&] {
+    stops.insert(stops.end(), workspace.found.begin(), workspace.found.end());
     sort_distinct(stops, same);
-  }
+  };
+  // The direction that needs more stops comes first: they often do for the other one. This does not depend on the order
+  // of faces.
+  const std::size_t along = divide_along(false), against = divide_along(true);
+  const bool first = against > along;
+  if (!first && along > 0) divide_along(false);
+  if (along + against > 0) add_found();
+  if (divide_along(!first) > 0) add_found();
   for (const EdgeRun& run : runs)
     if (!run.is_side && !is_laid(run, same)) lay(run, limits(run.patch), workspace);
 }

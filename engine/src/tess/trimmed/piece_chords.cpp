@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace tessera::inline abi_0_1 {
 namespace {
 
-constexpr int max_depth = 20;  // of halves
+constexpr int max_depth = 20;    // of halves
+constexpr int max_count = 1024;  // of even parts
+
+/// The parameter of a net at a share of it, where weights w_k c^k would be equal at both ends.
+double share_at(double share, double c) { return c * share / (1 - share + c * share); }
 
 /// Divides a piece at x, 0 < x < 1: `piece` becomes the part before. Returns the part after it.
 TrimPiece divide_at(TrimPiece& piece, double x) {
@@ -178,8 +183,11 @@ PieceChords::Sliver PieceChords::sliver_of(const ParameterPoint& chord, double c
     if (feet.along_u && dv > 0) sliver = std::min(sliver, speed.u * cross / dv);
   }
   const bool is_straight = sliver <= limits_->bend * std::hypot(speed.u * du, speed.v * dv);
-  const double room = std::max(limits_->sliver - error, limits_->sliver / 8);  // an error cannot be divided
-  return {sliver + error, is_straight && sliver <= room && du <= limits_->box.u && dv <= limits_->box.v};
+  return {sliver + error, is_straight && sliver <= sliver_room(error) && du <= limits_->box.u && dv <= limits_->box.v};
+}
+
+double PieceChords::sliver_room(double error) const {
+  return std::max(limits_->sliver - error, limits_->sliver / 8);  // an error cannot be divided
 }
 
 double PieceChords::error_of(const TrimPiece& piece) const {
@@ -223,30 +231,63 @@ void PieceChords::split(const Net& net, double x, Net& low, Net& high) const {
   }
 }
 
+PieceChords::Sliver PieceChords::sliver_of(const Net& net, double balance) const {
+  const std::size_t last = static_cast<std::size_t>(degree_);
+  const ParameterPoint a = net[0].point(), b = net[last].point(), chord{b.u - a.u, b.v - a.v};
+  double cross = 0;
+  for (std::size_t k = 1; k < last; ++k) cross = std::max(cross, cross_of(chord, a, net[k]));
+  return sliver_of(chord, cross * reach_of(net, balance), error_, {});
+}
+
+double PieceChords::cross_of(const ParameterPoint& chord, const ParameterPoint& start, const Control& q) {
+  return std::abs(chord.u * (q.v / q.w - start.v) - chord.v * (q.u / q.w - start.u));
+}
+
 // The control points of both halves lie nearer to the curve than its own.
 void PieceChords::divide(const Net& net, double from, double to, int depth) {
   const std::size_t last = static_cast<std::size_t>(degree_);
   const ParameterPoint a = net[0].point(), b = net[last].point();
   const ParameterPoint chord{b.u - a.u, b.v - a.v};
-  const auto cross_of = [&](const Control& q) {
-    return std::abs(chord.u * (q.v / q.w - a.v) - chord.v * (q.u / q.w - a.u));
-  };
-  double cross = 0;
-  for (std::size_t k = 1; k < last; ++k) cross = std::max(cross, cross_of(net[k]));
-  const double balance = this->balance(net), half = balance / (1 + balance);
-  cross *= reach_of(net, balance);
-  Sliver sliver = sliver_of(chord, cross, error_, {});
+  const double balance = this->balance(net);
+  const Sliver whole = sliver_of(net, balance);
   const bool is_cancelled = limits_->cancel && limits_->cancel->load(std::memory_order_relaxed);
-  if (sliver.is_fine || depth == max_depth || is_cancelled) return put(b, to, sliver);
+  if (whole.is_fine || depth >= max_depth || is_cancelled) return put(b, to, whole);
   Net low, high;
-  split(net, half, low, high);
-  cross = 0;
-  for (std::size_t k = 1; k <= last; ++k) cross = std::max({cross, cross_of(low[k]), cross_of(high[k - 1])});
-  sliver = sliver_of(chord, cross, error_, {});
+  split(net, share_at(0.5, balance), low, high);
+  double cross = 0;
+  for (std::size_t k = 1; k <= last; ++k)
+    cross = std::max({cross, cross_of(chord, a, low[k]), cross_of(chord, a, high[k - 1])});
+  const Sliver sliver = sliver_of(chord, cross, error_, {});
   if (sliver.is_fine) return put(b, to, sliver);
-  const double middle = from + half * (to - from);
-  divide(low, from, middle, depth + 1);
-  divide(high, middle, to, depth + 1);
+  int count = count_for(chord, std::min(whole.size, sliver.size));
+  for (int attempt = 0; attempt < 3 && count < max_count && !is_fine(net, count); ++attempt) ++count;
+  divide_evenly(net, from, to, depth + std::bit_width(static_cast<unsigned>(count - 1)), count);
+}
+
+// A sliver shrinks with the square of the length of its chord.
+int PieceChords::count_for(const ParameterPoint& chord, double sliver) const {
+  const SpeedBound& speed = limits_->speed;
+  const double du = std::abs(chord.u), dv = std::abs(chord.v), size = std::max(sliver - error_, 0.0);
+  const double most = std::max({std::sqrt(size / sliver_room(error_)), du / limits_->box.u, dv / limits_->box.v,
+                                size / (limits_->bend * std::hypot(speed.u * du, speed.v * dv))});
+  return most < max_count ? std::max(2, static_cast<int>(std::ceil(most))) : max_count;
+}
+
+bool PieceChords::is_fine(const Net& net, int count) const {
+  const double balance = this->balance(net);
+  if (count == 1) return sliver_of(net, balance).is_fine;
+  Net low, high;
+  split(net, share_at(double(count / 2) / count, balance), low, high);
+  return is_fine(low, count / 2) && is_fine(high, count - count / 2);
+}
+
+void PieceChords::divide_evenly(const Net& net, double from, double to, int depth, int count) {
+  if (count == 1) return divide(net, from, to, depth);
+  const double x = share_at(double(count / 2) / count, balance(net)), middle = from + x * (to - from);
+  Net low, high;
+  split(net, x, low, high);
+  divide_evenly(low, from, middle, depth, count / 2);
+  divide_evenly(high, middle, to, depth, count - count / 2);
 }
 
 double PieceChords::balance(const Net& net) const {

@@ -37,8 +37,8 @@ struct LaidChords {
   double sliver = 0;  ///< the largest
 };
 
-/// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over parts of one piece by
-/// halving it.
+/// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over even parts of one piece,
+/// as few as the limits allow. Parts that need more are divided again.
 ///
 /// Sliver bound, for a part of a chain with the ends a and b and control points q: by the cross products
 /// c = (b - a) x (q - a), each point between curve and chord lies at most d = max |c| / |b - a| from the line of the
@@ -76,6 +76,10 @@ class PieceChords {
   Sliver sliver_of(const ParameterPoint& chord, double cross, double error, const Feet& feet) const;
   /// The sliver of a chord over all of a chain.
   Sliver sliver_over(std::span<const TrimPiece> chain) const;
+  Sliver sliver_of(const Net& net, double balance) const;
+  /// The largest sliver of chords along a piece with this error.
+  double sliver_room(double error) const;
+  static double cross_of(const ParameterPoint& chord, const ParameterPoint& start, const Control& q);
   /// The number of pieces that the next chord spans.
   std::size_t reach(std::span<const TrimPiece> chain) const;
   double error_of(const TrimPiece& piece) const;
@@ -89,6 +93,11 @@ class PieceChords {
   void split(const Net& net, double x, Net& low, Net& high) const;
   /// `from`, `to`: of the piece, the part that the net is.
   void divide(const Net& net, double from, double to, int depth);
+  void divide_evenly(const Net& net, double from, double to, int depth, int count);
+  /// About the number of even parts that the limits need, from a chord over all and its sliver.
+  int count_for(const ParameterPoint& chord, double sliver) const;
+  /// Whether as many even parts keep the limits.
+  bool is_fine(const Net& net, int count) const;
   /// Appends the end of a chord.
   void put(const ParameterPoint& end, double to, const Sliver& sliver);
 
