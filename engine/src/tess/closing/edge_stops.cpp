@@ -57,6 +57,14 @@ void EdgeStops::find(const PatchSet::Impl& set, std::size_t edge,
     if (!run.is_side && !is_laid(run, same)) lay(run, limits(run.patch), workspace);
 }
 
+void EdgeStops::keep(EdgeStops& before, std::size_t edge) {
+  stops_[edge] = before.stops_[edge];
+  for (const EdgeRun& run : runs_->of(edge)) {
+    const std::size_t k = runs_->index(run);
+    chords_[k] = std::move(before.chords_[k]);
+  }
+}
+
 void EdgeStops::add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments,
                              std::vector<double>& found) {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);

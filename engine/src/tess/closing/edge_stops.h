@@ -34,6 +34,10 @@ class [[gnu::visibility("hidden")]] EdgeStops {
   void find(const PatchSet::Impl& set, std::size_t edge,
             FunctionRef<std::optional<Segments>(std::uint32_t patch, Side side)> segments,
             FunctionRef<const ChordLimits&(std::uint32_t patch)> limits, Workspace& workspace);
+  /// Takes the stops of an edge that were found before, for the same limits and segments. Threads: as for find().
+  void keep(EdgeStops & before, std::size_t edge);
+  /// Whether the stops of an edge are the same as before.
+  bool has_same(const EdgeStops& before, std::size_t edge) const { return stops_[edge] == before.stops_[edge]; }
   /// Replaces the points of a cut patch's side along edges by the stops there, where no other patch has them.
   void put_on_side(std::uint32_t patch, Side side, std::vector<SidePoint> & points) const;
   /// The chords of a run of `count` pieces, which end at all stops; null if there is none.

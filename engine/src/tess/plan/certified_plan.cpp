@@ -367,8 +367,8 @@ Result<CertifiedPlan> CertifiedPlanner::plan(const Request& request, const Execu
   if (runs_) {
     if (Status status = close_edges(request, plan, execution); !status.ok()) return status;
   } else if (set_->trims) {
-    std::optional<EdgeStops> no_stops;
-    if (Status status = divide_and_cut(request, plan, no_stops, execution); !status.ok()) return status;
+    Cutting cutting;
+    if (Status status = divide_and_cut(request, plan, cutting, execution); !status.ok()) return status;
   }
   plan.lay_out();
   return plan;

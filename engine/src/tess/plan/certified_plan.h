@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "block/patch_set_impl.h"
+#include "parallel/workspaces.h"
 #include "tess/bounds/cell_limits.h"
 #include "tess/bounds/chord_blocks.h"
 #include "tess/bounds/local_chord.h"
@@ -306,9 +307,17 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
     double tolerance = 0;
     TrimmedPatch limits;
   };
-  /// Finds what chords along edges must keep for the faces on both sides, as patches are divided now.
-  Status find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan, EdgeStops& stops,
-                    const Execution& execution) const;
+  /// What attempts to cut all patches share.
+  struct Cutting {
+    std::optional<CutShares> shares;  ///< once an attempt is made
+    std::optional<EdgeStops> stops;   ///< those that patches are cut by, if edges are closed
+    std::vector<double> excess;       ///< by cut patch
+    Workspaces<CutPatchMaker> makers;
+  };
+  /// Finds what chords along edges must keep for the faces on both sides, as patches are divided now. Edges without a
+  /// changed patch keep their stops. Marks the patches along edges whose stops change as changed, too.
+  Status find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan, std::optional<EdgeStops>& stops,
+                    std::vector<std::uint8_t>& is_changed, const Request& request, const Execution& execution) const;
   /// Gives faces the same vertices along the edges of shapes.
   Status close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const;
   /// `[4 * patch + side]`: whether triangles of two patches have the same border.
@@ -333,11 +342,13 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::vector<std::uint8_t> shared_edges() const;
   /// Cuts a patch, place `c` among the cuts, and sets its bounds. Returns the largest over its limit.
   double cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker, CertifiedPlan& plan) const;
-  /// Chooses the segments of cut patches, divides all patches and cuts them, until every bound holds or no attempt
-  /// helps. If edges are closed, sets `stops` to those that patches are cut by. Errors: invalid_argument (more triangles
-  /// than the limit), cancelled.
-  Status divide_and_cut(const Request& request, CertifiedPlan& plan, std::optional<EdgeStops>& stops,
-                        const Execution& execution) const;
+  /// Chooses the segments of cut patches, divides all patches and cuts those that are due or changed, until every bound
+  /// holds or no attempt helps. Errors: invalid_argument (more triangles than the limit), cancelled.
+  Status divide_and_cut(const Request& request, CertifiedPlan& plan, Cutting& cutting, const Execution& execution)
+      const;
+  /// Makes one attempt of it.
+  Status cut_once(const Request& request, std::span<const std::uint8_t> is_shared, CertifiedPlan& plan,
+                  Cutting& cutting, const Execution& execution) const;
   /// Sets the bounds of a patch that has been cut. Returns the largest over its limit.
   double bound_cut(const CutRoom& room, const CutPatch& cut, CertifiedPlan& plan) const;
   /// Refuses cut patches that have more triangles than the limit.

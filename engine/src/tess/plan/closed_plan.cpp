@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "base/union_find.h"
 #include "parallel/parallel_for.h"
@@ -14,8 +15,9 @@ constexpr std::size_t edges_per_task = 16;
 
 }  // namespace
 
-Status CertifiedPlanner::find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan, EdgeStops& stops,
-                                    const Execution& execution) const {
+Status CertifiedPlanner::find_stops(std::span<const CutRoom> rooms, const CertifiedPlan& plan,
+                                    std::optional<EdgeStops>& stops, std::vector<std::uint8_t>& is_changed,
+                                    const Request& request, const Execution& execution) const {
   std::vector<ChordLimits> of_cuts;
   for (const CutRoom& room : rooms) of_cuts.emplace_back(chord_limits(room.limits)).cancel = execution.cancel;
   const auto segments = [&](std::uint32_t patch, Side side) -> std::optional<Segments> {
@@ -25,11 +27,22 @@ Status CertifiedPlanner::find_stops(std::span<const CutRoom> rooms, const Certif
   const auto limits = [&](std::uint32_t patch) -> const ChordLimits& {
     return of_cuts[static_cast<std::size_t>(find_cut(plan.cuts(), patch) - plan.cuts().data())];
   };
+  std::optional<EdgeStops> before = std::exchange(stops, std::nullopt);
+  EdgeStops& now = stops.emplace(*runs_, same_share(request));
   const auto find = [&](std::size_t begin, std::size_t end) {
     EdgeStops::Workspace workspace;
-    for (std::size_t edge = begin; edge < end; ++edge) stops.find(*set_, edge, segments, limits, workspace);
+    for (std::size_t edge = begin; edge < end; ++edge)
+      if (!before || std::ranges::any_of(runs_->of(edge), [&](const EdgeRun& run) { return is_changed[run.patch]; }))
+        now.find(*set_, edge, segments, limits, workspace);
+      else
+        now.keep(*before, edge);
   };
-  return parallel_for(set_->edges->edges.size(), edges_per_task, {.cancel = execution.cancel}, find);
+  Status status = parallel_for(set_->edges->edges.size(), edges_per_task, {.cancel = execution.cancel}, find);
+  if (!status.ok() || !before) return status;
+  for (std::size_t edge = 0; edge < set_->edges->edges.size(); ++edge)
+    if (!now.has_same(*before, edge))
+      for (const EdgeRun& run : runs_->of(edge)) is_changed[run.patch] = 1;
+  return {};
 }
 
 // An edge is rarely longer than a few diagonals of the set, so vertices move by a small part of the tolerance.
@@ -38,19 +51,19 @@ double CertifiedPlanner::same_share(const Request& request) const {
 }
 
 // Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then these
-// patches are cut anew for less. In the last attempt they keep the bounds that they have.
+// patches are cut anew for less, and so are all to which vertices were added. In the last attempt they keep the bounds that they have.
 Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   constexpr int max_attempts = 6;
   std::vector<double> shares(set_->trims ? set_->trims->cuts.size() : 0, 1);
   Request cut = request;
   cut.cut_shares = shares;
-  std::optional<EdgeStops> stops;
+  Cutting cutting;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     if (set_->trims)
-      if (Status status = divide_and_cut(cut, plan, stops, execution); !status.ok()) return status;
+      if (Status status = divide_and_cut(cut, plan, cutting, execution); !status.ok()) return status;
     if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
     Result<ClosedEdges> made = tessera::close_edges(
-        *set_, *runs_, plan.divisions_, plan.rare_->cuts, stops ? &*stops : nullptr, options_.max_gap,
+        *set_, *runs_, plan.divisions_, plan.rare_->cuts, cutting.stops ? &*cutting.stops : nullptr, options_.max_gap,
         same_share(request), joined_borders(plan), [this](std::uint32_t patch) { return chord(patch); },
         execution.cancel);
     if (!made) return made.status();
@@ -62,10 +75,11 @@ Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan
     for (const std::uint32_t c : closed.edited_cuts) {
       CutPatch& edited = plan.rare_->cuts[c];
       const double excess = bound_cut(room_of(edited, 1, request, plan), edited, plan);
-      if (excess <= 1 || std::binary_search(beyond.begin(), beyond.begin() + std::ptrdiff_t(known), edited.patch))
-        continue;
-      beyond.push_back(edited.patch);
-      shares[c] *= 0.95 / excess;
+      const bool is_known = std::binary_search(beyond.begin(), beyond.begin() + std::ptrdiff_t(known), edited.patch);
+      const double factor = excess <= 1 || is_known ? 1 : 0.95 / excess;
+      cutting.shares->restart(c, factor);
+      shares[c] *= factor;
+      if (factor < 1) beyond.push_back(edited.patch);
     }
     if (beyond.size() == known) break;
     std::ranges::sort(beyond);

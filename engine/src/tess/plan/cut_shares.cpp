@@ -12,9 +12,11 @@ constexpr double least_step = 1.0 / 64;
 
 }  // namespace
 
-CutShares::CutShares(std::size_t count, double share, std::span<const double> factors) : patches_(count) {
-  for (std::size_t k = 0; k < count; ++k)
-    patches_[k].share = patches_[k].best_share = share * (factors.empty() ? 1 : factors[k]);
+CutShares::CutShares(std::size_t count, double share) : patches_(count, Patch{.share = share, .best_share = share}) {}
+
+void CutShares::restart(std::size_t patch, double factor) {
+  const double share = factor * patches_[patch].share;
+  patches_[patch] = {.share = share, .best_share = share};
 }
 
 bool CutShares::is_any_due() const { return std::ranges::any_of(patches_, &Patch::is_due); }

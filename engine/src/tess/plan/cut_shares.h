@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 namespace tessera::inline abi_0_1 {
@@ -19,8 +18,8 @@ namespace tessera::inline abi_0_1 {
 /// each gain divides it.
 class CutShares {
  public:
-  /// `factors`: by patch, by how much its first share is smaller than `share`; empty: all 1.
-  CutShares(std::size_t count, double share, std::span<const double> factors);
+  /// `share`: the first of each patch.
+  CutShares(std::size_t count, double share);
 
   double share(std::size_t patch) const { return patches_[patch].share; }
   /// Whether the patch must be cut anew in the next attempt.
@@ -28,6 +27,8 @@ class CutShares {
   bool is_any_due() const;
   /// Whether the patch stays above its limits.
   bool is_beyond(std::size_t patch) const { return !(patches_[patch].excess <= 1); }
+  /// Begins anew with a share smaller by `factor`.
+  void restart(std::size_t patch, double factor);
   /// Takes the result of an attempt: the largest bound of the patch over its limit.
   void take(std::size_t patch, double excess);
   /// Keeps the cells that the patch has: no others can be chosen for its share.

@@ -183,7 +183,7 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
   return has_too_many ? std::numeric_limits<double>::infinity() : bound_cut(room, plan.rare_->cuts[c], plan);
 }
 
-Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, std::optional<EdgeStops>& stops,
+Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& plan, Cutting& cutting,
                                         const Execution& execution) const {
   const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
   if (!plan.rare_) plan.rare_ = std::make_unique<CertifiedPlan::Rare>();
@@ -193,40 +193,49 @@ Status CertifiedPlanner::divide_and_cut(const Request& request, CertifiedPlan& p
   std::erase_if(plan.rare_->beyond, [this](std::uint32_t patch) { return is_cut(patch); });
   find_same_borders(plan);
   const std::vector<std::uint8_t> is_shared = shared_edges();
-  CutShares shares(cuts.size(), cell_share, request.cut_shares);
-  std::vector<double> excess(cuts.size(), 0);
-  for (int attempt = 0; attempt < max_attempts && shares.is_any_due(); ++attempt) {
-    choose_cut(request, shares, plan);
-    const std::vector<Division> before = std::exchange(plan.divisions_, {});
-    divide(request.tolerance, plan);
-    const Result<std::vector<CutRoom>> rooms = find_rooms(request, plan, execution);
-    if (!rooms) return rooms.status();
-    if (runs_)
-      if (Status status = find_stops(*rooms, plan, stops.emplace(*runs_, same_share(request)), execution); !status.ok())
-        return status;
-    const auto cut_some = [&](std::size_t begin, std::size_t end) {
-      CutPatchMaker maker;
-      for (std::size_t c = begin; c < end; ++c)
-        if (shares.is_due(c) || !(before[cuts[c].patch] == plan.divisions_[cuts[c].patch]))
-          excess[c] = cut_patch(c, {*rooms, stops ? &*stops : nullptr, is_shared, execution.cancel}, maker, plan);
-    };
-    const Execution quiet{.cancel = execution.cancel};
-    if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
-    for (std::size_t c = 0; c < cuts.size(); ++c) {
-      if (plan.cuts()[c].has_too_many) return too_many(request, cuts[c].patch);
-      if (!(plan.cuts()[c].sliver < request.tolerance))
-        shares.settle(c);  // smaller cells leave the slivers as they are
-      shares.take(c, excess[c]);
-    }
-    if (Status status = check_triangles(request, plan); !status.ok()) return status;
-  }
+  if (!cutting.shares) cutting.shares.emplace(cuts.size(), cell_share);
+  cutting.excess.resize(cuts.size(), 0);
+  for (int attempt = 0; attempt < max_attempts && cutting.shares->is_any_due(); ++attempt)
+    if (Status status = cut_once(request, is_shared, plan, cutting, execution); !status.ok()) return status;
   plan.count_open_edges_beside_loops(edges_);
   for (std::size_t c = 0; c < cuts.size(); ++c) {
     if (plan.cuts()[c].is_crossed) plan.rare_->crossed.push_back(cuts[c].patch);
-    if (shares.is_beyond(c)) plan.rare_->beyond.push_back(cuts[c].patch);
+    if (cutting.shares->is_beyond(c)) plan.rare_->beyond.push_back(cuts[c].patch);
   }
   std::ranges::sort(plan.rare_->beyond);
   return {};
+}
+
+Status CertifiedPlanner::cut_once(const Request& request, std::span<const std::uint8_t> is_shared, CertifiedPlan& plan,
+                                  Cutting& cutting, const Execution& execution) const {
+  const std::vector<PatchTrims::Cut>& cuts = set_->trims->cuts;
+  CutShares& shares = *cutting.shares;
+  std::vector<double>& excess = cutting.excess;
+  choose_cut(request, shares, plan);
+  const std::vector<Division> before = std::exchange(plan.divisions_, {});
+  divide(request.tolerance, plan);
+  std::vector<std::uint8_t> is_changed(plan.divisions_.size(), before.empty());
+  for (std::size_t k = 0; k < before.size(); ++k) is_changed[k] = !(before[k] == plan.divisions_[k]);
+  for (std::size_t c = 0; c < cuts.size(); ++c) is_changed[cuts[c].patch] |= shares.is_due(c);
+  const Result<std::vector<CutRoom>> rooms = find_rooms(request, plan, execution);
+  if (!rooms) return rooms.status();
+  if (runs_)
+    if (Status status = find_stops(*rooms, plan, cutting.stops, is_changed, request, execution); !status.ok())
+      return status;
+  const auto cut_some = [&](std::size_t begin, std::size_t end) {
+    const auto maker = cutting.makers.take();
+    const CutPass pass{*rooms, cutting.stops ? &*cutting.stops : nullptr, is_shared, execution.cancel};
+    for (std::size_t c = begin; c < end; ++c)
+      if (is_changed[cuts[c].patch]) excess[c] = cut_patch(c, pass, *maker, plan);
+  };
+  const Execution quiet{.cancel = execution.cancel};
+  if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet, cut_some); !status.ok()) return status;
+  for (std::size_t c = 0; c < cuts.size(); ++c) {
+    if (plan.cuts()[c].has_too_many) return too_many(request, cuts[c].patch);
+    if (!(plan.cuts()[c].sliver < request.tolerance)) shares.settle(c);  // smaller cells leave the slivers as they are
+    shares.take(c, excess[c]);
+  }
+  return check_triangles(request, plan);
 }
 
 Status CertifiedPlanner::too_many(const Request& request, std::size_t patch) const {
