@@ -14,7 +14,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr double piece_chords_pi = std::numbers::piece_chords_pi;
+constexpr double piece_chords_pi = std::numbers::pi;
 
 /// The arc of the unit circle from one angle to another, as a rational parabola.
 TrimPiece arc(double from, double to) {
