@@ -189,8 +189,8 @@ TEST(EdgeMatching, NarrowFacesAreNoSlits) {
     EXPECT_EQ(counts_of(joined({strip}, distance)), (Counts{{1, 4}})) << width;
     EXPECT_EQ(counts_of(joined({below, strip, above}, distance)), (Counts{{1, 8}, {2, 2}})) << width;
     ModelSurface trimmed = quad({-1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-1, 1, 0});  // parameters from 0 to 1
-    trimmed.trims =
-        std::vector<TrimLoop>{polygon({{0.2, 0.5, 0}, {0.6, 0.5, 0}, {0.6, 0.5 + w / 2, 0}, {0.2, 0.5 + w / 2, 0}})};
+    trimmed.trims = std::vector<TrimLoop>{
+        space_polygon({{0.2, 0.5, 0}, {0.6, 0.5, 0}, {0.6, 0.5 + w / 2, 0}, {0.2, 0.5 + w / 2, 0}})};
     EXPECT_EQ(counts_of(joined({trimmed}, distance)), (Counts{{1, 4}})) << width;
   }
 }
