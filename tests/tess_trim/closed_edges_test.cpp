@@ -44,7 +44,7 @@ TEST(ClosedEdges, VerticesStandWhereTheShapeStatesThem) {
     Shape shape = joined(drilled_plate(), 1e-6);
     std::vector<TrimLoop> loops = *shape.faces[0].trims;
     const Vec3 start = loops[0].curves[1].points().front(), end = loops[0].curves[1].points().back();
-    loops[0].curves[1] = line(start + gap / length(end - start) * (end - start), end);
+    loops[0].curves[1] = space_line(start + gap / length(end - start) * (end - start), end);
     shape.faces[0].trims = std::move(loops);
     const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3});
     EXPECT_TRUE(made.report.closed()) << gap;
@@ -91,7 +91,7 @@ TEST(ClosedEdges, TrianglesAtPolesTakeTheVerticesOfTheirNeighbours) {
     }
     std::vector<Vec3> base;
     for (const Vec3& p : corners) base.push_back(p + Vec3{2, 2, 0});
-    std::vector<ModelSurface> faces{rectangle_face({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, {polygon(base)})};
+    std::vector<ModelSurface> faces{rectangle_face({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, {space_polygon(base)})};
     for (std::size_t k = 0; k < count; ++k) {
       std::vector<double> lines;
       for (double at = 0.1 + number(0.4); lines.size() < random() % 4 && at < 0.95; at += 0.1 + number(0.4))
