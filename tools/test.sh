@@ -71,7 +71,7 @@ while (($#)); do
 done
 cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
-echo "test: the first build and all tests take about an hour on two cores, and longer with sanitizers. Later builds compile only"
+echo "test: the first build and all tests take about 40 minutes on two cores, and longer with sanitizers. Later builds compile only"
 echo "test: what changed. --help says how to build and run some of the tests."
 tools/setup.sh --for test
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
