@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "base/infinity.h"
 #include "base/text.h"
 #include "tess/plan/certified_plan.h"
 
@@ -99,10 +100,12 @@ CertifiedPlanner::Choice CertifiedPlanner::choose_beyond(std::size_t patch, cons
   const double given = 1.25 * (roundings_[patch] + fit_error_);
   Request relaxed = request;
   relaxed.fewest = false, relaxed.kept = {};
-  for (relaxed.slack = 2;; relaxed.slack *= 2) {  // infinite limits are kept
-    if (!(relaxed.slack * request.tolerance > given)) continue;
+  constexpr int most = 64;  // the last limits are infinite, so it ends
+  for (int k = 1;; ++k) {
+    relaxed.slack = k < most ? std::ldexp(1.0, k) : infinity;
+    if (k < most && !(relaxed.slack * request.tolerance > given)) continue;
     const Choice choice = choose(patch, relaxed, is_cut(patch) ? max_rate_of_cut : max_rate);
-    if (choice.failure == Failure::none || std::isinf(relaxed.slack)) return choice;
+    if (choice.failure == Failure::none || k == most) return choice;
   }
 }
 
