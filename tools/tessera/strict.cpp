@@ -48,8 +48,7 @@ std::vector<std::string> mesh_faults(const std::vector<std::string>& warnings, c
     faults.push_back(counted(made.whole_faces, "surface") + " whole, because loops could not be used");
   if (!made.crossed.empty())
     faults.push_back(counted(made.crossed.size(), "surface") + " left out in part, because loops are no polygon");
-  if (!made.rough.empty())
-    faults.push_back(counted(made.rough.size(), "surface") + " beyond the tolerance");
+  if (!made.rough.empty()) faults.push_back(counted(made.rough.size(), "surface") + " beyond the tolerance");
   if (!made.proven) faults.push_back("the bound is sampled, not proven");
   if (is_too_coarse(made)) faults.push_back("the numbers of the file are too coarse for the tolerance");
   if (made.patches_without_angle > 0)
