@@ -165,10 +165,12 @@ TrimLoop arcs(const ParameterPoint& centre, double radius, int count) {
   return loop;
 }
 
-TEST(TrimmedFace, OfLoopsInManyPiecesHasNoMoreTriangles) {
+// A chord over many pieces ends where one of them does. At 1e-3 chords of the circle are as long as 11.4 pieces, so those of
+// 400 pieces are shorter by up to an eighth.
+TEST(TrimmedFace, OfLoopsInManyPiecesHasFewMoreTriangles) {
   Face many(plane(), {arcs({2, 1.5}, 1, 400)}), few(plane(), {circle({2, 1.5}, 1)});
   for (const double tolerance : {1e-1, 1e-2, 1e-3})
-    EXPECT_LE(many.mesh(tolerance).triangle_count(), few.mesh(tolerance).triangle_count()) << tolerance;
+    EXPECT_LE(8 * many.mesh(tolerance).triangle_count(), 9 * few.mesh(tolerance).triangle_count()) << tolerance;
   for (const double tolerance : {0.3, 1e-2, 1e-4})
     expect_good(plane(), {arcs({2, 1.5}, 1, 400)}, outside_of({{{2, 1.5}, 1}}, true), tolerance, 1);
   expect_good(wavy(), {arcs({2, 1}, 1.3, 400)}, outside_of({{{2, 1}, 1.3}}, true), 1e-2, 1);
