@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "commands.h"
@@ -73,23 +74,29 @@ MeshTotals totals_of(const PartSums& sums, bool double_positions) {
   return {sums.all.vertices, sums.all.triangles, sums.all.quads, true, true, true, double_positions};
 }
 
-/// Writes one .ply file; the leader's `out` is it.
-Status write_ply(const PartMesh& own, const PartSums& sums, const MeshTotals& totals, OutputFile& out, MpiTeam& team) {
+/// Writes one .ply file, `output`, as the leader's `out`.
+Status write_ply(const PartMesh& own, const PartSums& sums, const MeshTotals& totals, const std::string& output,
+                 OutputFile& out, MpiTeam& team) {
   const Result<PlyLayout> layout = PlyLayout::make(totals);
   if (!layout) return layout.status();
   const Result<std::string> file = team.text_of_leader(out.temporary().string());
   if (!file) return file.status();
   const PiecePlace place{sums.before.vertices, sums.before.triangles, sums.before.quads, sums.before.patches};
-  return team.transport().agree(write_ply_piece(MPI_COMM_WORLD, *file, *layout, own.mesh, place));
+  Status written = write_ply_piece(MPI_COMM_WORLD, *file, *layout, own.mesh, place);
+  if (!written.ok()) written = Status(written.code(), output + ": " + written.message());
+  return team.transport().agree(written);
 }
 
+/// Writes a piece for each rank, then the index. If any rank fails, no piece stays.
 Status write_vtp(const PartMesh& own, const PartSums& sums, const MeshTotals& totals, const std::string& index,
                  MpiTeam& team) {
   Transport& transport = team.transport();
-  const Status written =
-      transport.agree(write_vtp_piece(own.mesh, totals, index, transport.part(), sums.before.patches));
-  if (!written.ok() || !team.leads()) return written;
-  return write_pvtp(totals, index, transport.part_count());
+  const Status piece = write_vtp_piece(own.mesh, totals, index, transport.part(), sums.before.patches);
+  Status written = transport.agree(piece);
+  if (written.ok())
+    written = transport.agree(team.leads() ? write_pvtp(totals, index, transport.part_count()) : Status());
+  if (!written.ok() && piece.ok()) std::filesystem::remove(vtp_piece_path(index, transport.part()));
+  return written;
 }
 
 /// The distance that the mesh keeps, in words; rates keep none.
@@ -157,7 +164,7 @@ Status mesh_together(const Job& job, const TessellateOptions& options, const Com
   const auto phase = timings.phase("write");
   const MeshTotals totals =
       totals_of(*sums, plan.has_double_sums || plan.options.precision == Precision::double_precision);
-  Status status = is_ply(job.output) ? write_ply(*own, *sums, totals, *out, team)
+  Status status = is_ply(job.output) ? write_ply(*own, *sums, totals, job.output, *out, team)
                                      : write_vtp(*own, *sums, totals, job.output, team);
   if (status.ok() && team.leads() && is_ply(job.output)) status = out->commit();
   status = transport.agree(status);
