@@ -15,7 +15,7 @@ class Workspaces {
   /// A workspace until the end of its scope.
   class Lease {
    public:
-    explicit Lease(Workspaces& all) : all_(all), own_(all.next()) {}
+    Lease(Workspaces& all, std::unique_ptr<T> own) : all_(all), own_(std::move(own)) {}
     ~Lease() {
       const std::lock_guard lock(all_.mutex_);
       all_.free_.push_back(std::move(own_));
@@ -28,18 +28,21 @@ class Workspaces {
     Workspaces& all_;
     std::unique_ptr<T> own_;
   };
-  Lease take() { return Lease(*this); }
+  /// `arguments`: of the constructor, if there is none to take.
+  template <class... Arguments>
+  Lease take(const Arguments&... arguments) {
+    std::unique_ptr<T> own = last();
+    return Lease(*this, own ? std::move(own) : std::make_unique<T>(arguments...));
+  }
 
  private:
-  std::unique_ptr<T> next() {
+  /// The last one that was given back; null, and room for one more, if there is none.
+  std::unique_ptr<T> last() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) {
-      free_.reserve(++count_);
-      return std::make_unique<T>();
-    }
-    std::unique_ptr<T> last = std::move(free_.back());
+    if (free_.empty()) return free_.reserve(++count_), nullptr;
+    std::unique_ptr<T> own = std::move(free_.back());
     free_.pop_back();
-    return last;
+    return own;
   }
 
   std::mutex mutex_;

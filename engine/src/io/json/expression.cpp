@@ -8,11 +8,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <mutex>
 #include <numbers>
 #include <optional>
 
 #include "base/text.h"
+#include "parallel/workspaces.h"
 #include "tessera/files.h"
 
 namespace tessera::inline abi_0_1 {
@@ -125,24 +125,9 @@ std::string reason(const mu::ParserError& error) {
 struct Expression::Pool {
   std::string text;
   std::vector<std::string> variables;
-  std::mutex mutex;
-  std::vector<std::unique_ptr<Evaluator>> idle;
+  Workspaces<Evaluator> evaluators;
 
-  std::unique_ptr<Evaluator> take() {
-    {
-      const std::lock_guard lock(mutex);
-      if (!idle.empty()) {
-        std::unique_ptr<Evaluator> evaluator = std::move(idle.back());
-        idle.pop_back();
-        return evaluator;
-      }
-    }
-    return std::make_unique<Evaluator>(text, variables);
-  }
-  void put_back(std::unique_ptr<Evaluator> evaluator) {
-    const std::lock_guard lock(mutex);
-    idle.push_back(std::move(evaluator));
-  }
+  Workspaces<Evaluator>::Lease take() { return evaluators.take(text, variables); }
 };
 
 Result<Expression> Expression::compile(std::string_view text, std::span<const std::string_view> variables) {
@@ -154,21 +139,14 @@ Result<Expression> Expression::compile(std::string_view text, std::span<const st
   pool->text = text;
   pool->variables.assign(variables.begin(), variables.end());
   try {
-    auto evaluator = pool->take();
-    if (evaluator->count() != 1) return refusal(text, "expected one value, found a list");
-    pool->put_back(std::move(evaluator));
+    if ((*pool->take()).count() != 1) return refusal(text, "expected one value, found a list");
   } catch (const mu::ParserError& error) {
     return refusal(text, reason(error));
   }
   return Expression(std::move(pool));
 }
 
-double Expression::operator()(std::span<const double> values) const {
-  std::unique_ptr<Evaluator> evaluator = pool_->take();
-  const double value = (*evaluator)(values);
-  pool_->put_back(std::move(evaluator));
-  return value;
-}
+double Expression::operator()(std::span<const double> values) const { return (*pool_->take())(values); }
 
 const std::string& Expression::text() const { return pool_->text; }
 
