@@ -12,7 +12,9 @@ endif()
 # Carried by every target of this project, and by none of its users.
 add_library(tessera_compile INTERFACE)
 target_compile_options(tessera_compile INTERFACE
-  -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:TESSERA_MAY_SHADOW>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wold-style-cast -Wnon-virtual-dtor
+  # Tests set this property: files of one unit would warn of each other's names.
+  $<$<NOT:$<BOOL:$<TARGET_PROPERTY:TESSERA_MAY_SHADOW>>>:-Wshadow>
   # gcc 12 warns wrongly of string + string (its bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   # Results must not depend on what the compiler fuses, and NaN and infinity keep their meaning.
@@ -31,8 +33,7 @@ endif()
 # Makes the target tessera_NAME of files in engine/src/NAME. They include the public headers, their own folder and the
 # floors below, all as <folder>/<file>; tests/house checks every #include.
 #
-# - LEVEL: how Release optimises the floor, -O3 unless told. Floors that hand batches to kernels take -O2, those that run
-#   once per surface or file -Os.
+# - LEVEL: how Release optimises the floor, -O3 unless told.
 # - With CMAKE_UNITY_BUILD, each folder is compiled as one unit, because parsing the same headers takes most of the time.
 #   So names in anonymous namespaces differ within a folder.
 function(tessera_floor name)
@@ -60,7 +61,7 @@ function(tessera_unit_per_folder target)
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
   # gcc takes the files of a unit for headers, in which classes must not hold what anonymous namespaces define. It also
-  # inlines less in large units: readers then took up to a tenth more instructions.
+  # inlines less in large units: without the parameter readers take up to a tenth more instructions.
   target_compile_options(${target} PRIVATE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:
     -Wno-subobject-linkage;--param=large-unit-insns=1000000>)
 endfunction()

@@ -55,7 +55,7 @@ draw_pictures() {
   "$tessera" raycast tools/models/bearing_block.step -o out/bearing_block.png --size 1280x800
 }
 
-echo "demo: the first run compiles the library, 5 to 10 minutes on two cores; later runs take seconds."
+echo "demo: the first run compiles the library, about six minutes on two cores; later runs take seconds."
 step "set-up" tools/setup.sh --for cad
 step "build" build
 mkdir -p out

@@ -51,7 +51,8 @@ double CertifiedPlanner::same_share(const Request& request) const {
 }
 
 // Vertices that are inserted into cut patches may make triangles a little larger than they were cut for: then these
-// patches are cut anew for less, and so are all to which vertices were added. In the last attempt they keep the bounds that they have.
+// patches are cut anew for less, and so are all to which vertices were added. In the last attempt they keep the bounds
+// that they have.
 Status CertifiedPlanner::close_edges(const Request& request, CertifiedPlan& plan, const Execution& execution) const {
   constexpr int max_attempts = 6;
   std::vector<double> shares(set_->trims ? set_->trims->cuts.size() : 0, 1);

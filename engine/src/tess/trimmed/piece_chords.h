@@ -48,9 +48,8 @@ struct LaidChords {
 class PieceChords {
  public:
   /// Appends the points of a chain but its start, and the parameters of the caller's curve there. `chain`: pieces that
-  /// follow each other. Returns the largest sliver bound, which is at most
-  /// limits.sliver, unless a piece would need more than 2^20 chords. The errors of the pieces count as a part of the
-  /// sliver.
+  /// follow each other. Returns the largest sliver bound, which is at most limits.sliver, unless a piece would need more
+  /// than 2^20 chords. The errors of the pieces count as a part of the sliver.
   double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points,
                 std::vector<double>& parameters);
   /// Does the same with chords that also end at stops. All pieces are of one curve.
