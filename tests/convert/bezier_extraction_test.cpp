@@ -17,7 +17,7 @@ namespace {
 
 const std::vector<KnotStyle> extracted_styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
 
-void expect_same(const BSplineSurface& s, const PatchGrid& grid, Random& random, double limit) {
+void expect_same_patches(const BSplineSurface& s, const PatchGrid& grid, Random& random, double limit) {
   const double unit = double_unit * largest_coefficient(s.points());
   EXPECT_EQ(grid.domain(), s.domain());
   for (const double u : sample_parameters(random, s.knots_u(), s.domain().u0, s.domain().u1, 2))
@@ -40,7 +40,7 @@ TEST(BezierExtraction, ReproducesTheSurface) {
       for (const bool rational : {false, true}) {
         const BSplineSurface s = random_surface(random, p, q, extracted_styles[k],
                                                 extracted_styles[(k + 3) % extracted_styles.size()], rational);
-        expect_same(s, value_of(to_bezier(s)), random, 8);
+        expect_same_patches(s, value_of(to_bezier(s)), random, 8);
       }
 }
 
@@ -159,7 +159,7 @@ TEST(Figures, NurbsOfFivePointsMakesFourPatches) {
   }
   const BSplineSurface nurbs =
       value_of(BSplineSurface::rational(3, knots, 3, knots, points, random_positive(random, 25)));
-  expect_same(nurbs, value_of(to_bezier(nurbs)), random, 8);
+  expect_same_patches(nurbs, value_of(to_bezier(nurbs)), random, 8);
 }
 
 TEST(Figures, UniformBSplinePatchConverts) {
@@ -183,7 +183,7 @@ TEST(BezierExtraction, ASmallerDomainIsTheSameSurfaceThere) {
                  : value_of(BSplineSurface::polynomial(3, s.knots_u(), 2, s.knots_v(), s.points(), part));
     const PatchGrid grid = value_of(to_bezier(cut));
     EXPECT_EQ(grid.domain(), part);
-    expect_same(cut, grid, random, 8);
+    expect_same_patches(cut, grid, random, 8);
   }
 }
 

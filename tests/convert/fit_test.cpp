@@ -14,7 +14,7 @@ namespace {
 
 /// The largest distance at equal parameters, on `count` x `count` points of every patch, away from the places that fits
 /// sample.
-double deviation(const ParametricSurface& surface, const PatchGrid& grid, int count) {
+double fit_deviation(const ParametricSurface& surface, const PatchGrid& grid, int count) {
   double largest = 0;
   for (std::size_t k = 0; k < grid.patches().size(); ++k) {
     const Domain d = grid.patch_domain(k);
@@ -102,7 +102,7 @@ TEST(Fit, CertifiedBoundsHoldAndAreNotFarAbove) {
         const FitError error = grid.fit_error();
         EXPECT_TRUE(error.certified) << name;
         EXPECT_LE(error.distance, tolerance) << name;
-        const double found = deviation(surface, grid, grid.patches().size() > 1000 ? 6 : 12);
+        const double found = fit_deviation(surface, grid, grid.patches().size() > 1000 ? 6 : 12);
         EXPECT_LE(found, error.distance + 1e-15) << name << ", tolerance " << tolerance << ", degree " << degree;
         // Overestimation by intervals shrinks with the cells.
         EXPECT_TRUE(tolerance > 1e-5 || degree == 5 || error.distance <= 20 * found + 1e-13) << name;
@@ -117,7 +117,7 @@ TEST(Fit, SampledFitsKeepTheTolerance) {
       const PatchGrid grid = value_of(to_bezier(bare(surface), {.tolerance = 1e-5, .degree = degree}));
       EXPECT_FALSE(grid.fit_error().certified);
       EXPECT_LE(grid.fit_error().distance, 1e-5);
-      const double found = deviation(surface, grid, 13);
+      const double found = fit_deviation(surface, grid, 13);
       EXPECT_LE(found, 1.05 * grid.fit_error().distance + 1e-14) << name << " " << degree;
       expect_watertight(grid);
     }
@@ -159,7 +159,7 @@ TEST(Fit, ReproducesPolynomials) {
       ASSERT_TRUE(grid.ok()) << grid.status().message();
       ASSERT_EQ(grid->patches().size(), 1u) << n;
       EXPECT_EQ(grid->fit_error().certified, bounds) << n;
-      EXPECT_LE(deviation(value_of(ParametricSurface::make(functions, domain)), *grid, 10), 1e-13) << n;
+      EXPECT_LE(fit_deviation(value_of(ParametricSurface::make(functions, domain)), *grid, 10), 1e-13) << n;
     }
   }
 }
@@ -169,7 +169,7 @@ TEST(Fit, ASShapedPieceIsNotTakenForItsChord) {
   const auto waves = [](double u, double v) { return Vec3{u, v, std::sin(2 * pi * u) * std::sin(2 * pi * v)}; };
   const ParametricSurface surface = value_of(ParametricSurface::make({.position = waves}));
   const PatchGrid grid = value_of(to_bezier(surface, {.tolerance = 1e-4}));
-  EXPECT_LE(deviation(surface, grid, 16), 1e-4);
+  EXPECT_LE(fit_deviation(surface, grid, 16), 1e-4);
   // Section 12's S-piece, z-rows (0, 1, -1, 0), is a cubic and comes back as one patch, with its extrema.
   const auto piece = [](double u, double v) { return Vec3{u, v, 3 * u * (1 - u) * (1 - 2 * u)}; };
   const PatchGrid cubic = value_of(to_bezier(value_of(ParametricSurface::make({.position = piece}))));
@@ -186,7 +186,7 @@ TEST(Fit, InfiniteDerivativesAtABorder) {
   const ParametricSurface root = over_disc(RootHemisphere{});
   const PatchGrid grid = value_of(to_bezier(root, {.tolerance = 1e-6}));
   EXPECT_FALSE(grid.fit_error().certified);
-  EXPECT_LE(deviation(root, grid, 9), 1e-6);
+  EXPECT_LE(fit_deviation(root, grid, 9), 1e-6);
   EXPECT_LE(grid.patches().size(), 5000u);
   const auto breaks = grid.breaks_u();
   EXPECT_LT(breaks.back() - breaks[breaks.size() - 2], 1e-10);
@@ -273,10 +273,10 @@ TEST(Fit, BreakpointsFromTheStart) {
   const ParametricSurface surface = value_of(ParametricSurface::make({.position = creased}));
   const PatchGrid with = value_of(to_bezier(surface, {.tolerance = 1e-6, .breaks_u = {1.0 / 3}, .breaks_v = {0.7}}));
   EXPECT_EQ(with.patches().size(), 4u);
-  EXPECT_LE(deviation(surface, with, 8), 1e-15);
+  EXPECT_LE(fit_deviation(surface, with, 8), 1e-15);
   const PatchGrid without = value_of(to_bezier(surface, {.tolerance = 1e-6}));
   EXPECT_GT(without.patches().size(), 100u);
-  EXPECT_LE(deviation(surface, without, 8), 1.5e-6);  // the crease lies between samples
+  EXPECT_LE(fit_deviation(surface, without, 8), 1.5e-6);  // the crease lies between samples
   for (const std::vector<double>& breaks : std::vector<std::vector<double>>{{0}, {1}, {not_a_number}, {-1}, {0.5, 0.5}})
     expect_refused(to_bezier(surface, {.breaks_v = breaks}), StatusCode::invalid_argument,
                    static_cast<std::ptrdiff_t>(breaks.size()) - 1, "breakpoint v[");

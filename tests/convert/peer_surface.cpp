@@ -21,7 +21,7 @@ Route patches_route(std::shared_ptr<const PatchGrid> grid) {
 }
 
 /// The Bezier patches of all pieces as one grid.
-Result<PatchGrid> grid_of(std::span<const TensorPatch> pieces) {
+Result<PatchGrid> peer_grid(std::span<const TensorPatch> pieces) {
   std::vector<double> breaks_u{pieces[0].domain().u0}, breaks_v{pieces[0].domain().v0};
   std::vector<BezierPatch> patches;
   for (const TensorPatch& piece : pieces) {
@@ -55,7 +55,7 @@ void PeerSurface::add(std::span<const TensorPatch> pieces) {
                         if (piece.domain().contains(u, v)) return evaluate_jet(piece, u, v);
                       return std::nullopt;
                     }});
-  if (const auto grid = kept(grid_of(pieces), *this)) routes.push_back(patches_route(grid));
+  if (const auto grid = kept(peer_grid(pieces), *this)) routes.push_back(patches_route(grid));
 }
 
 }  // namespace tessera::test

@@ -103,7 +103,7 @@ class Accuracy : public ::testing::TestWithParam<Isa> {};
 /// Every degree of a basis under every condition, against the bounds of evaluate.h. The units of the power basis
 /// include its growth.
 template <class T>
-void check_bounds(Isa isa, Representation representation) {
+void check_position_bounds(Isa isa, Representation representation) {
   Random random(11);
   PatchSetOptions options;
   options.blocks = {true, true, true, true};
@@ -134,14 +134,14 @@ void check_bounds(Isa isa, Representation representation) {
   }
 }
 
-TEST_P(Accuracy, FloatBernstein) { check_bounds<float>(GetParam(), Representation::bernstein); }
-TEST_P(Accuracy, DoubleBernstein) { check_bounds<double>(GetParam(), Representation::bernstein); }
-TEST_P(Accuracy, FloatPower) { check_bounds<float>(GetParam(), Representation::power); }
-TEST_P(Accuracy, DoublePower) { check_bounds<double>(GetParam(), Representation::power); }
+TEST_P(Accuracy, FloatBernstein) { check_position_bounds<float>(GetParam(), Representation::bernstein); }
+TEST_P(Accuracy, DoubleBernstein) { check_position_bounds<double>(GetParam(), Representation::bernstein); }
+TEST_P(Accuracy, FloatPower) { check_position_bounds<float>(GetParam(), Representation::power); }
+TEST_P(Accuracy, DoublePower) { check_position_bounds<double>(GetParam(), Representation::power); }
 
 /// The bounds hold where weights fall off steeply.
 template <class T>
-void check_steep(Isa isa, Representation representation) {
+void check_steep_positions(Isa isa, Representation representation) {
   Random random(15);
   PatchSetOptions options;
   options.origin = Vec3{};
@@ -162,10 +162,10 @@ void check_steep(Isa isa, Representation representation) {
     EXPECT_LE(errors.normal, 8);
   }
 }
-TEST_P(Accuracy, FloatWithSteepWeights) { check_steep<float>(GetParam(), Representation::bernstein); }
-TEST_P(Accuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam(), Representation::bernstein); }
-TEST_P(Accuracy, FloatPowerWithSteepWeights) { check_steep<float>(GetParam(), Representation::power); }
-TEST_P(Accuracy, DoublePowerWithSteepWeights) { check_steep<double>(GetParam(), Representation::power); }
+TEST_P(Accuracy, FloatWithSteepWeights) { check_steep_positions<float>(GetParam(), Representation::bernstein); }
+TEST_P(Accuracy, DoubleWithSteepWeights) { check_steep_positions<double>(GetParam(), Representation::bernstein); }
+TEST_P(Accuracy, FloatPowerWithSteepWeights) { check_steep_positions<float>(GetParam(), Representation::power); }
+TEST_P(Accuracy, DoublePowerWithSteepWeights) { check_steep_positions<double>(GetParam(), Representation::power); }
 
 /// Normals are right where steep weights leave only the errors of a tangent: there they are exact.
 TEST_P(Accuracy, NormalsWhereATangentIsLost) {

@@ -16,7 +16,7 @@ namespace {
 bool available(Isa isa) { return std::ranges::count(available_isas(), isa) > 0; }
 
 template <class T, class Buffers = AllBuffers<T>>
-Buffers run(const PatchSet& set, Isa isa, int threads, ExecutionReport* report = nullptr) {
+Buffers run_once(const PatchSet& set, Isa isa, int threads, ExecutionReport* report = nullptr) {
   const auto u = uniform_parameters(9), v = uniform_parameters(14);
   const GridPlan plan = value_of(GridPlan::make(set, u, v, {.precision = precision_of<T>, .isa = isa}));
   Buffers out(plan);
@@ -30,32 +30,32 @@ Buffers run(const PatchSet& set, Isa isa, int threads, ExecutionReport* report =
 }
 
 template <class T>
-void compare_bytes() {
+void compare_runs() {
   Random random(21);
   PatchSetOptions options;
   options.blocks.double_bernstein = true;
   const PatchSet set = set_of(mixed_patches(random, 4, 12), options);
   for (const Isa isa : available_isas()) {
     ExecutionReport report;
-    const auto one = run<T>(set, isa, 1, &report);
+    const auto one = run_once<T>(set, isa, 1, &report);
     EXPECT_GT(report.tasks, 2u) << "too little work to be shared";
     EXPECT_EQ(report.isa, isa);
-    EXPECT_TRUE(one == run<T>(set, isa, 2)) << name(isa);
-    EXPECT_TRUE(one == run<T>(set, isa, 8)) << name(isa);
+    EXPECT_TRUE(one == run_once<T>(set, isa, 2)) << name(isa);
+    EXPECT_TRUE(one == run_once<T>(set, isa, 8)) << name(isa);
   }
   if (!available(Isa::avx512)) GTEST_SKIP() << "this machine lacks AVX-512";
-  EXPECT_TRUE(run<T>(set, Isa::avx2, 1) == run<T>(set, Isa::avx512, 2));
+  EXPECT_TRUE(run_once<T>(set, Isa::avx2, 1) == run_once<T>(set, Isa::avx512, 2));
 }
 
-TEST(Determinism, FloatBytes) { compare_bytes<float>(); }
-TEST(Determinism, DoubleBytes) { compare_bytes<double>(); }
+TEST(Determinism, FloatBytes) { compare_runs<float>(); }
+TEST(Determinism, DoubleBytes) { compare_runs<double>(); }
 
 /// SSE2 has no fused multiply-add: were its bits those of AVX2, the wrong kernel would have run.
 TEST(Determinism, Sse2RoundsDifferently) {
   if (!available(Isa::avx2)) GTEST_SKIP() << "this machine lacks AVX2";
   Random random(22);
   const PatchSet set = set_of(mixed_patches(random, 4));
-  EXPECT_FALSE(run<float>(set, Isa::sse2, 1) == run<float>(set, Isa::avx2, 1));
+  EXPECT_FALSE(run_once<float>(set, Isa::sse2, 1) == run_once<float>(set, Isa::avx2, 1));
 }
 
 TEST(Isa, EnvironmentForcesOne) {

@@ -10,7 +10,7 @@
 namespace tessera::test {
 namespace {
 
-std::vector<double> parameters(int count) {
+std::vector<double> flat_parameters(int count) {
   std::vector<double> t;
   for (int k = 0; k < count; ++k) t.push_back((k + 0.3) / count);
   return t;
@@ -26,11 +26,11 @@ PatchSet polynomial_set(int patches) {
   return set_of(all);
 }
 
-void check(int patches, int nu, int nv, std::size_t shift, Stores stores, Isa isa) {
+void check_flat(int patches, int nu, int nv, std::size_t shift, Stores stores, Isa isa) {
   SCOPED_TRACE(testing::Message() << patches << " patches, " << nu << "x" << nv << " at " << shift << ", "
                                   << name(isa));
   const PatchSet set = polynomial_set(patches);
-  const auto plan = value_of(GridPlan::make(set, parameters(nu), parameters(nv), {.isa = isa}));
+  const auto plan = value_of(GridPlan::make(set, flat_parameters(nu), flat_parameters(nv), {.isa = isa}));
   AlignedVector<float> blocks(plan.block_capacity());
   ASSERT_TRUE(evaluate(set, plan, QuantityBlocks<float>{.position = blocks}).ok());
   const float untouched = -7;
@@ -57,14 +57,14 @@ TEST(FlatGrid, BitsOfBlocksInAnyPlace) {
     for (const Stores stores : {Stores::plain, Stores::streaming})
       for (const int patches : {1, 3, 40})
         for (const auto& [nu, nv] : {std::pair{2, 16}, {5, 17}, {33, 33}, {16, 21}, {1, 64}, {7, 100}})
-          for (const std::size_t shift : {0, 1, 7, 15}) check(patches, nu, nv, shift, stores, isa);
+          for (const std::size_t shift : {0, 1, 7, 15}) check_flat(patches, nu, nv, shift, stores, isa);
 }
 
 /// Large grids are cut into parts of rows.
 TEST(FlatGrid, PartsOfOnePatch) {
   for (const Isa isa : available_isas())
     for (const auto& [nu, nv] : {std::pair{300, 200}, {2500, 16}, {3, 20000}})
-      check(2, nu, nv, 5, Stores::automatic, isa);
+      check_flat(2, nu, nv, 5, Stores::automatic, isa);
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ GeometryErrors geometry_errors_of(const PatchSet& set, const GridPlan& plan, con
 class GeometryAccuracy : public ::testing::TestWithParam<Isa> {};
 
 template <class T>
-void check_bounds(Isa isa) {
+void check_geometry_bounds(Isa isa) {
   Random random(91);
   PatchSetOptions options;
   options.blocks = {true, true, false, false};
@@ -147,12 +147,12 @@ void check_bounds(Isa isa) {
   }
 }
 
-TEST_P(GeometryAccuracy, Float) { check_bounds<float>(GetParam()); }
-TEST_P(GeometryAccuracy, Double) { check_bounds<double>(GetParam()); }
+TEST_P(GeometryAccuracy, Float) { check_geometry_bounds<float>(GetParam()); }
+TEST_P(GeometryAccuracy, Double) { check_geometry_bounds<double>(GetParam()); }
 
 /// The bounds hold where weights fall off steeply.
 template <class T>
-void check_steep(Isa isa) {
+void check_steep_geometry(Isa isa) {
   Random random(94);
   PatchSetOptions options;
   options.origin = Vec3{};
@@ -176,8 +176,8 @@ void check_steep(Isa isa) {
     EXPECT_LE(errors.direction, 8);
   }
 }
-TEST_P(GeometryAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
-TEST_P(GeometryAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
+TEST_P(GeometryAccuracy, FloatWithSteepWeights) { check_steep_geometry<float>(GetParam()); }
+TEST_P(GeometryAccuracy, DoubleWithSteepWeights) { check_steep_geometry<double>(GetParam()); }
 
 /// The power basis of a cubic gives the same geometry, with larger errors.
 TEST_P(GeometryAccuracy, PowerBasis) {

@@ -63,7 +63,7 @@ struct Evaluated {
   }
 };
 
-std::vector<BezierPatch> patches_of(const Result<BSplineSurface>& surface) {
+std::vector<BezierPatch> curved_patches(const Result<BSplineSurface>& surface) {
   const PatchGrid grid = value_of(to_bezier(value_of(surface)));
   return {grid.patches().begin(), grid.patches().end()};
 }
@@ -87,7 +87,7 @@ constexpr double tolerance = sizeof(T) == 4 ? 2e-4 : 1e-12;
 template <class T>
 void Geometry::check_sphere() {
   const double radius = 2.5;
-  const Evaluated<T> ball(patches_of(make_nurbs_sphere({.origin = {1, -2, 3}}, radius)), t, GetParam());
+  const Evaluated<T> ball(curved_patches(make_nurbs_sphere({.origin = {1, -2, 3}}, radius)), t, GetParam());
   std::size_t poles = 0;
   for (std::size_t k = 0; k < ball.count(); ++k) {
     const Vec3 outwards = normalized(ball.position(k) - Vec3{1, -2, 3});
@@ -113,7 +113,7 @@ TEST_P(Geometry, SphereDouble) { check_sphere<double>(); }
 
 /// Umbilics are flagged within the tolerance of the options.
 TEST_P(Geometry, SphereIsUmbilicWithinTolerance) {
-  const auto patches = patches_of(make_nurbs_sphere({}, 1));
+  const auto patches = curved_patches(make_nurbs_sphere({}, 1));
   const PatchSet set = set_of(patches, both_precisions());
   const std::vector<double> inner{0.1, 0.5, 0.75};
   for (const auto precision : {Precision::single_precision, Precision::double_precision}) {
@@ -133,7 +133,7 @@ TEST_P(Geometry, SphereIsUmbilicWithinTolerance) {
 /// k2 = -1 / minor around the tube, k1 = -cos / (major + minor cos) around the ring.
 template <class T>
 void Geometry::check_torus() {
-  const Evaluated<T> ring(patches_of(make_nurbs_torus({}, 3, 1)), t, GetParam());
+  const Evaluated<T> ring(curved_patches(make_nurbs_torus({}, 3, 1)), t, GetParam());
   for (std::size_t k = 0; k < ring.count(); ++k) {
     const Vec3 p = ring.position(k);
     const double across = std::hypot(p.x, p.y), cosine = across - 3, around = -cosine / across;
@@ -142,7 +142,7 @@ void Geometry::check_torus() {
     EXPECT_NEAR(ring.out.second_curvature.at(k, 0), -1, 10 * tolerance<T>);
     EXPECT_NEAR(ring.out.gaussian.at(k, 0), -around, 10 * tolerance<T>);
     EXPECT_NEAR(ring.out.mean.at(k, 0), 0.5 * (around - 1), 10 * tolerance<T>);
-    const Vec3 along_ring = normalized({-p.y, p.x, 0});
+    const Vec3 along_ring = normalized(Vec3{-p.y, p.x, 0});
     EXPECT_NEAR(std::abs(dot(read(ring.out.first_direction, k), along_ring)), 1, 10 * tolerance<T>);
     EXPECT_NEAR(dot(read(ring.out.second_direction, k), along_ring), 0, 10 * tolerance<T>);
   }
@@ -151,7 +151,7 @@ TEST_P(Geometry, TorusFloat) { check_torus<float>(); }
 TEST_P(Geometry, TorusDouble) { check_torus<double>(); }
 
 TEST_P(Geometry, CylinderSaddleAndPlane) {
-  const Evaluated<double> pipe(patches_of(make_nurbs_cylinder({}, 2, 5)), t, GetParam());
+  const Evaluated<double> pipe(curved_patches(make_nurbs_cylinder({}, 2, 5)), t, GetParam());
   for (std::size_t k = 0; k < pipe.count(); ++k) {
     EXPECT_NEAR(pipe.out.first_curvature.at(k, 0), 0, 1e-13);
     EXPECT_NEAR(pipe.out.second_curvature.at(k, 0), -0.5, 1e-13);
@@ -196,7 +196,7 @@ TEST_P(Geometry, SubnormalDifferencesCountAsNone) {
 /// Patches with degenerate points of many sorts.
 std::vector<BezierPatch> degenerate_patches() {
   Random random(95);
-  std::vector<BezierPatch> patches = patches_of(make_nurbs_sphere({}, 2));
+  std::vector<BezierPatch> patches = curved_patches(make_nurbs_sphere({}, 2));
   const auto collapse = [&](const BezierPatch& patch, double shift) {
     std::vector<Vec3> points(patch.points().begin(), patch.points().end());
     for (int j = 1; j <= patch.degree_v(); ++j)

@@ -58,7 +58,7 @@ struct Reference {
 
 /// Runs with both views placed at `memory + first` by `place`, and compares every value of the memory.
 template <class T, class Place>
-void check(const Reference<T>& r, std::size_t values, Stores stores, Place&& place, bool with_kinds = true) {
+void check_lines(const Reference<T>& r, std::size_t values, Stores stores, Place&& place, bool with_kinds = true) {
   const T untouched = T(-7);
   std::vector<T> memory(values, untouched), expected(values, untouched);
   const auto views_of = [&](std::vector<T>& all) { return place(std::span<T>(all)); };
@@ -82,7 +82,7 @@ void check(const Reference<T>& r, std::size_t values, Stores stores, Place&& pla
 }
 
 template <class T>
-void check_grid(int nu, int nv, Isa isa, const std::vector<std::size_t>& shifts) {
+void check_line_grid(int nu, int nv, Isa isa, const std::vector<std::size_t>& shifts) {
   const Reference<T> r(nu, nv, isa);
   const std::size_t count = r.plan.capacity();
   for (const Stores stores : {Stores::plain, Stores::streaming}) {
@@ -94,25 +94,25 @@ void check_grid(int nu, int nv, Isa isa, const std::vector<std::size_t>& shifts)
         return QuantityViews<T>{.position = View3<T>::interleaved(memory, 6, 3),
                                 .normal = View3<T>::interleaved(memory, 6, 0)};
       };
-      check(r, 6 * count + shift, stores, record);
-      check(r, 6 * count + shift, stores, record, false);
-      check(r, 6 * count + 2 * shift, stores, [&](std::span<T> all) {
+      check_lines(r, 6 * count + shift, stores, record);
+      check_lines(r, 6 * count + shift, stores, record, false);
+      check_lines(r, 6 * count + 2 * shift, stores, [&](std::span<T> all) {
         return QuantityViews<T>{.position = View3<T>::interleaved(all.subspan(shift, 3 * count)),
                                 .normal = View3<T>::interleaved(all.subspan(2 * shift + 3 * count))};
       });
     }
-    check(r, 6 * count + 3, stores, [&](std::span<T> all) {  // arrays; of the normal in another order
+    check_lines(r, 6 * count + 3, stores, [&](std::span<T> all) {  // arrays; of the normal in another order
       const auto array = [&](std::size_t k) { return all.subspan(1 + k * count, count); };
       return QuantityViews<T>{.position = View3<T>::soa({array(0), array(1), array(2)}),
                               .normal = View3<T>::soa({array(5), array(3), array(4)})};
     });
     for (const std::size_t record : {7u, 8u, 15u, 40u})  // with gaps
-      check(r, record * count + 1, stores, [&](std::span<T> all) {
+      check_lines(r, record * count + 1, stores, [&](std::span<T> all) {
         const auto memory = all.subspan(1);
         return QuantityViews<T>{.position = View3<T>::interleaved(memory, record, record - 3),
                                 .normal = View3<T>::interleaved(memory, record, 1)};
       });
-    check(r, 5 * count + 4 * count, stores, [&](std::span<T> all) {  // a stride of its own each
+    check_lines(r, 5 * count + 4 * count, stores, [&](std::span<T> all) {  // a stride of its own each
       return QuantityViews<T>{.position = View3<T>::interleaved(all.first(5 * count), 5, 1),
                               .normal = View3<T>::interleaved(all.subspan(5 * count), 4, 0)};
     });
@@ -122,8 +122,8 @@ void check_grid(int nu, int nv, Isa isa, const std::vector<std::size_t>& shifts)
 TEST(Lines, AnyPlaceInALine) {
   const std::vector<std::size_t> all{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   for (const Isa isa : available_isas()) {
-    check_grid<float>(3, 3, isa, all);
-    check_grid<double>(3, 3, isa, all);
+    check_line_grid<float>(3, 3, isa, all);
+    check_line_grid<double>(3, 3, isa, all);
   }
 }
 
@@ -131,14 +131,14 @@ TEST(Lines, AnySizeOfGrid) {
   for (const Isa isa : available_isas())
     for (const auto& [nu, nv] :
          {std::pair{1, 1}, {1, 2}, {2, 2}, {1, 5}, {2, 3}, {4, 4}, {5, 5}, {1, 16}, {17, 1}, {8, 8}, {9, 7}, {33, 5}}) {
-      check_grid<float>(nu, nv, isa, {0, 3, 5});
-      check_grid<double>(nu, nv, isa, {0, 3, 5});
+      check_line_grid<float>(nu, nv, isa, {0, 3, 5});
+      check_line_grid<double>(nu, nv, isa, {0, 3, 5});
     }
 }
 
 /// Large grids are cut into rows, which begin and end in the middle of cache lines and of other threads' cache lines.
 TEST(Lines, GridsInPieces) {
-  for (const Isa isa : available_isas()) check_grid<float>(67, 61, isa, {3});
+  for (const Isa isa : available_isas()) check_line_grid<float>(67, 61, isa, {3});
 }
 
 }  // namespace

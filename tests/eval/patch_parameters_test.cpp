@@ -32,7 +32,7 @@ PatchSet set_with_poles() {
 }
 
 template <class T>
-void check(const PatchSet& set, Isa isa) {
+void check_own(const PatchSet& set, Isa isa) {
   SCOPED_TRACE(name(isa));
   Random random(62);
   const std::vector<double> u = random_parameters(random, set.patch_count() * count_u);
@@ -71,8 +71,8 @@ void check(const PatchSet& set, Isa isa) {
 TEST(PatchParameters, AreThoseOfAllPatchesBitForBit) {
   const PatchSet set = set_with_poles();
   for (const Isa isa : available_isas()) {
-    check<float>(set, isa);
-    check<double>(set, isa);
+    check_own<float>(set, isa);
+    check_own<double>(set, isa);
   }
 }
 

@@ -53,7 +53,7 @@ Errors errors_of(const PatchSet& set, const Samples<T>& samples, Isa isa) {
 class PointAccuracy : public ::testing::TestWithParam<Isa> {};
 
 template <class T>
-void check_bounds(Isa isa) {
+void check_point_bounds(Isa isa) {
   Random random(301);
   for (int degree = 1; degree <= max_degree; ++degree) {
     SCOPED_TRACE("degree " + std::to_string(degree));
@@ -74,8 +74,8 @@ void check_bounds(Isa isa) {
   }
 }
 
-TEST_P(PointAccuracy, Float) { check_bounds<float>(GetParam()); }
-TEST_P(PointAccuracy, Double) { check_bounds<double>(GetParam()); }
+TEST_P(PointAccuracy, Float) { check_point_bounds<float>(GetParam()); }
+TEST_P(PointAccuracy, Double) { check_point_bounds<double>(GetParam()); }
 
 /// A model of size 10 a million away, weights from 1e-3 to 1e3, sizes from 1e-6 to 1e6.
 TEST_P(PointAccuracy, FarAwayUnevenAndOfAnySize) {
@@ -113,7 +113,7 @@ Samples<T> samples_near_borders(Random& random, std::size_t patch_count, std::si
 
 /// The bounds hold where weights fall off steeply.
 template <class T>
-void check_steep(Isa isa) {
+void check_steep_points(Isa isa) {
   Random random(304);
   PatchSetOptions options = with_points();
   options.origin = Vec3{};
@@ -133,8 +133,8 @@ void check_steep(Isa isa) {
     EXPECT_LE(errors.normal, 8);
   }
 }
-TEST_P(PointAccuracy, FloatWithSteepWeights) { check_steep<float>(GetParam()); }
-TEST_P(PointAccuracy, DoubleWithSteepWeights) { check_steep<double>(GetParam()); }
+TEST_P(PointAccuracy, FloatWithSteepWeights) { check_steep_points<float>(GetParam()); }
+TEST_P(PointAccuracy, DoubleWithSteepWeights) { check_steep_points<double>(GetParam()); }
 
 /// If weights are exact, points and grids have the same bits in every output.
 template <class T>

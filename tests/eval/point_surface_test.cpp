@@ -36,7 +36,7 @@ struct Places {
 };
 
 /// Knots, ends and places between, surface after surface and then in random order.
-Places places_of(Random& random, const std::vector<BSplineSurface>& surfaces) {
+Places own_places(Random& random, const std::vector<BSplineSurface>& surfaces) {
   Places places;
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
     const Domain& d = surfaces[k].domain();
@@ -61,7 +61,7 @@ TEST(PointsOfSurfaces, AreThoseOfTheDefinition) {
   const PatchSet set = all.set();
   const SurfaceMap map = value_of(SurfaceMap::make(set));
   ASSERT_EQ(map.surface_count(), 6u);
-  const Places places = places_of(random, all.surfaces);
+  const Places places = own_places(random, all.surfaces);
   for (const Isa isa : available_isas()) {
     AllBuffers<double> twice(places.u.size());
     AllBuffers<float> single(places.u.size());
@@ -160,7 +160,7 @@ TEST(PointsOfSurfaces, BadInput) {
   const Surfaces all(random);
   const PatchSet set = all.set();
   const SurfaceMap map = value_of(SurfaceMap::make(set));
-  Places places = places_of(random, all.surfaces);
+  Places places = own_places(random, all.surfaces);
   AllBuffers<float> out(places.u.size());
   places.surface[77] = 6;
   Status status = evaluate(set, map, places.views(), out.views());

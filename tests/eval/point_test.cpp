@@ -26,7 +26,7 @@ AllBuffers<T> run(const PatchSet& set, const Samples<T>& samples, Isa isa, int t
 }
 
 template <class T>
-void compare_bytes(const std::vector<BezierPatch>& patches, std::size_t count) {
+void compare_points(const std::vector<BezierPatch>& patches, std::size_t count) {
   Random random(311);
   const PatchSet set = set_of(patches, with_points());
   const Samples<T> samples = random_samples<T>(random, set.patch_count(), count);
@@ -45,14 +45,14 @@ void compare_bytes(const std::vector<BezierPatch>& patches, std::size_t count) {
 }
 
 TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfOneDegree) {
-  compare_bytes<float>(test::wavy_field(9, 11), 20000);
-  compare_bytes<double>(test::wavy_field(9, 11), 9000);
+  compare_points<float>(test::wavy_field(9, 11), 20000);
+  compare_points<double>(test::wavy_field(9, 11), 9000);
 }
 TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfMixedDegrees) {
   Random random(312);
   const std::vector<BezierPatch> patches = mixed_patches(random, 4, 2);
-  compare_bytes<float>(patches, 9000);
-  compare_bytes<double>(patches, 9000);
+  compare_points<float>(patches, 9000);
+  compare_points<double>(patches, 9000);
 }
 
 /// A sample's values depend neither on its neighbours nor on the kernel that their order selects.
@@ -136,7 +136,7 @@ TEST(Points, EachOutputAloneIsWhatItIsAmongOthers) {
 }
 
 /// A cap whose edge u = 0 is one point, on every edge in turn; the sphere's poles; patches that are a curve or a point.
-std::vector<BezierPatch> degenerate_patches() {
+std::vector<BezierPatch> degenerate_samples() {
   const Vec3 pole{0, 0, 1};
   const BezierPatch cap =
       polynomial(2, 2, {pole, pole, pole, {0.5, 0, 1}, {0.5, 0.5, 1}, {0, 0.5, 1}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -150,7 +150,7 @@ std::vector<BezierPatch> degenerate_patches() {
 /// Kinds equal the grid's; normals do so within the rounding of limits.
 template <class T>
 void compare_degenerate(Isa isa) {
-  const PatchSet set = set_of(degenerate_patches(), with_points());
+  const PatchSet set = set_of(degenerate_samples(), with_points());
   const std::vector<double> t = {0, 0.25, 0.5, 1};
   const GridPlan plan = value_of(GridPlan::make(set, t, t, {.precision = precision_of<T>, .isa = isa}));
   AllBuffers<T> grid(plan);

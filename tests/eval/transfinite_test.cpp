@@ -20,7 +20,7 @@
 namespace tessera::test {
 namespace {
 
-std::vector<double> parameters(double from, double to, std::size_t count) {
+std::vector<double> blend_parameters(double from, double to, std::size_t count) {
   std::vector<double> t;
   for (std::size_t k = 0; k < count; ++k)
     t.push_back(k + 1 == count && count > 1 ? to
@@ -71,7 +71,7 @@ RuledSurface wavy_ruled(Direction straight) {
 template <class T, class Surface>
 void check_accuracy(const Surface& surface) {
   const Domain d = surface.domain();
-  const auto u = parameters(d.u0, d.u1, 37), v = parameters(d.v0, d.v1, 53);
+  const auto u = blend_parameters(d.u0, d.u1, 37), v = blend_parameters(d.v0, d.v1, 53);
   const double size = 8, unit = sizeof(T) == 4 ? float_unit : double_unit;
   for (const Isa isa : available_isas()) {
     const ForcedIsa forced(isa);
@@ -151,13 +151,13 @@ TEST(Transfinite, CallsEachBorderOnceAParameter) {
 
 // Every tail, misaligned and strided memory, arrays and records: the same values, and nothing else is written.
 template <class T>
-void check_layouts() {
+void check_blend_layouts() {
   const CoonsPatch patch = wavy_patch();
-  const auto u = parameters(-1, 2, 3);
+  const auto u = blend_parameters(-1, 2, 3);
   for (const Isa isa : available_isas()) {
     const ForcedIsa forced(isa);
     for (std::size_t count = 1; count <= 40; ++count) {
-      const auto v = parameters(0, 4, count);
+      const auto v = blend_parameters(0, 4, count);
       const std::size_t records = 3 * count;
       const auto expected = evaluated<T>(patch, u, v);
       const auto check = [&](std::vector<T>& memory, const View3<T>& view, std::size_t written) {
@@ -181,13 +181,13 @@ void check_layouts() {
   }
 }
 
-TEST(Transfinite, AnyLayoutOfFloats) { check_layouts<float>(); }
-TEST(Transfinite, AnyLayoutOfDoubles) { check_layouts<double>(); }
+TEST(Transfinite, AnyLayoutOfFloats) { check_blend_layouts<float>(); }
+TEST(Transfinite, AnyLayoutOfDoubles) { check_blend_layouts<double>(); }
 
 template <class T>
 std::vector<T> with_threads(const CoonsPatch& patch, Isa isa, int threads, ExecutionReport& report) {
   const ForcedIsa forced(isa);
-  const auto u = parameters(-1, 2, 301), v = parameters(0, 4, 777);
+  const auto u = blend_parameters(-1, 2, 301), v = blend_parameters(0, 4, 777);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);
   Execution execution;
@@ -198,7 +198,7 @@ std::vector<T> with_threads(const CoonsPatch& patch, Isa isa, int threads, Execu
 }
 
 template <class T>
-void compare_bytes() {
+void compare_blends() {
   const CoonsPatch patch = wavy_patch();
   ExecutionReport report;
   for (const Isa isa : available_isas()) {
@@ -214,12 +214,12 @@ void compare_bytes() {
       << "SSE2 rounds products: the wrong kernel ran";
 }
 
-TEST(Transfinite, TheSameFloatsForAnyThreadsAndUnits) { compare_bytes<float>(); }
-TEST(Transfinite, TheSameDoublesForAnyThreadsAndUnits) { compare_bytes<double>(); }
+TEST(Transfinite, TheSameFloatsForAnyThreadsAndUnits) { compare_blends<float>(); }
+TEST(Transfinite, TheSameDoublesForAnyThreadsAndUnits) { compare_blends<double>(); }
 
 TEST(Transfinite, ReproducesTheBordersOfConstantV) {
   const CoonsPatch patch = wavy_patch();
-  const auto u = parameters(-1, 2, 20);
+  const auto u = blend_parameters(-1, 2, 20);
   const auto values = evaluated<double>(patch, u, std::vector<double>{0, 4});
   for (std::size_t i = 0; i < u.size(); ++i) {
     EXPECT_EQ(record(values, 2 * i), value_of(position(patch.borders().c1, u[i])));
@@ -282,7 +282,7 @@ TEST(Transfinite, TellsItsProgress) {
   std::vector<double> told;
   Execution execution;
   execution.progress = [&](double share) { told.push_back(share); };
-  evaluated<float>(wavy_patch(), parameters(-1, 2, 200), parameters(0, 4, 500), execution);
+  evaluated<float>(wavy_patch(), blend_parameters(-1, 2, 200), blend_parameters(0, 4, 500), execution);
   ASSERT_FALSE(told.empty());
   EXPECT_TRUE(std::ranges::is_sorted(told));
   EXPECT_EQ(told.back(), 1);

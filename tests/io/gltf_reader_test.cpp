@@ -29,7 +29,7 @@ std::string bytes_of(const std::vector<T>& values) {
 
 /// A file of one square: four positions, and six indices of type U. The buffer lies in the file "square.bin".
 template <class Index = std::uint8_t>
-json gltf_reader_square(int index_type = 5121) {
+json gltf_square(int index_type = 5121) {
   const std::size_t indices = 6 * sizeof(Index);
   return {{"asset", {{"version", "2.0"}}},
           {"scene", 0},
@@ -157,22 +157,22 @@ TEST_F(GltfReading, FilesOfTinygltfAreReadInEveryForm) {
 
 TEST_F(GltfReading, IndicesAreOfThreeTypesOrMissing) {
   const std::vector<std::uint32_t> expected{0, 1, 2, 0, 2, 3};
-  EXPECT_EQ(mesh_of(gltf_reader_square()).indices, expected);
-  EXPECT_EQ(mesh_of(gltf_reader_square()).positions, corners);
+  EXPECT_EQ(mesh_of(gltf_square()).indices, expected);
+  EXPECT_EQ(mesh_of(gltf_square()).positions, corners);
   folder_.file("square.bin", square_bytes<std::uint16_t>());
-  EXPECT_EQ(mesh_of(gltf_reader_square<std::uint16_t>(5123)).indices, expected);
+  EXPECT_EQ(mesh_of(gltf_square<std::uint16_t>(5123)).indices, expected);
   folder_.file("square.bin", square_bytes<std::uint32_t>());
-  EXPECT_EQ(mesh_of(gltf_reader_square<std::uint32_t>(5125)).indices, expected);
-  expect_refused(gltf_reader_square<std::uint32_t>(5126),
+  EXPECT_EQ(mesh_of(gltf_square<std::uint32_t>(5125)).indices, expected);
+  expect_refused(gltf_square<std::uint32_t>(5126),
                  "/meshes/0/primitives/0/indices: expected indices of component type");
-  json none = gltf_reader_square();
+  json none = gltf_square();
   none["meshes"][0]["primitives"][0].erase("indices");
   none["accessors"][0]["count"] = 3;
   EXPECT_EQ(mesh_of(none).indices, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
 TEST_F(GltfReading, StripsAndFansBecomeTriangles) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   json& primitive = file["meshes"][0]["primitives"][0];
   primitive.erase("indices");
   primitive["mode"] = 5;
@@ -186,7 +186,7 @@ TEST_F(GltfReading, StripsAndFansBecomeTriangles) {
 }
 
 TEST_F(GltfReading, TransformsMultiplyAlongTheTree) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   const double turn = std::sqrt(0.5);
   file["nodes"] = {{{"children", {1, 2}}, {"translation", {100, 0, 0}}, {"rotation", {turn, 0, 0, turn}}},
                    {{"mesh", 0}, {"matrix", {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0, 0, 5, 0, 1}}},
@@ -205,7 +205,7 @@ TEST_F(GltfReading, TransformsMultiplyAlongTheTree) {
 TEST_F(GltfReading, NumbersMayBeInterleavedAndOfIntegers) {
   const std::vector<std::int16_t> values{0, 0, 0, 9, 32767, 0, 0, 9, 32767, 32767, 0, 9, 0, -32768, 0, 9};
   folder_.file("square.bin", bytes_of(values) + std::string({0, 1, 2, 0, 2, 3}));
-  json file = gltf_reader_square();
+  json file = gltf_square();
   file["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_materials_unlit"};
   file["buffers"][0]["byteLength"] = 38;
   file["bufferViews"] = {{{"buffer", 0}, {"byteLength", 32}, {"byteStride", 8}},
@@ -221,7 +221,7 @@ TEST_F(GltfReading, NumbersMayBeInterleavedAndOfIntegers) {
 }
 
 TEST_F(GltfReading, PartsThatAreSkippedAreNamed) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   json& primitives = file["meshes"][0]["primitives"];
   primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
   primitives.push_back({{"attributes", {{"_WEIGHT", 0}}}});
@@ -237,7 +237,7 @@ TEST_F(GltfReading, PartsThatAreSkippedAreNamed) {
 }
 
 TEST_F(GltfReading, OtherFilesMustLieBesideOrBelow) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   std::filesystem::create_directory(folder_ / "a b");
   folder_.file("a b/square.bin", square_bytes());
   json& uri = file["buffers"][0]["uri"];
@@ -267,7 +267,7 @@ TEST_F(GltfReading, OtherFilesMustLieBesideOrBelow) {
 
 TEST_F(GltfReading, NumbersOutsideTheirBufferAreRefused) {
   const auto refused = [&](const char* place, json value, const std::string& words) {
-    json file = gltf_reader_square();
+    json file = gltf_square();
     file[json::json_pointer(place)] = std::move(value);
     expect_refused(file, words);
   };
@@ -293,17 +293,17 @@ TEST_F(GltfReading, NumbersOutsideTheirBufferAreRefused) {
   refused("/scenes/0/nodes", json::array({0, 0}), "/nodes/0: the node is a child of two nodes, or of itself");
   refused("/nodes", {{{"name", "empty"}}}, "there are no triangles");
   folder_.file("square.bin", bytes_of(corners) + std::string({0, 1, 2, 0, 2, 4}));
-  expect_refused(gltf_reader_square(), "/meshes/0/primitives/0: index 5 is 4, but there are 4 vertices");
+  expect_refused(gltf_square(), "/meshes/0/primitives/0: index 5 is 4, but there are 4 vertices");
 }
 
 TEST_F(GltfReading, FormsThatAreNotReadAreNamed) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   file["accessors"][0]["sparse"] = json::object();
   expect_refused(file, "/accessors/0/sparse: sparse accessors are not read", StatusCode::unsupported);
-  file = gltf_reader_square();
+  file = gltf_square();
   file["accessors"][0].erase("bufferView");
   expect_refused(file, "/accessors/0: \"bufferView\" is missing", StatusCode::unsupported);
-  file = gltf_reader_square();
+  file = gltf_square();
   file["asset"]["version"] = "1.0";
   expect_refused(file, "/asset/version: found version \"1.0\"", StatusCode::unsupported);
   expect_refused(json::object(), "\"asset\" is missing");
@@ -311,7 +311,7 @@ TEST_F(GltfReading, FormsThatAreNotReadAreNamed) {
 }
 
 TEST_F(GltfReading, CopiesOfAMeshAreLimited) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   file["nodes"] = json::array({{{"children", json::array()}}});
   const auto add = [&](std::size_t copies) {
     for (std::size_t k = 0; k < copies; ++k) {
@@ -332,7 +332,7 @@ TEST_F(GltfReading, CopiesOfAMeshAreLimited) {
 }
 
 TEST_F(GltfReading, ContainersMustBeWhole) {
-  json file = gltf_reader_square();
+  json file = gltf_square();
   file["buffers"][0].erase("uri");
   const std::string whole = glb(file.dump(), square_bytes());
   const auto parse = [](const std::string& bytes) { return parse_gltf(bytes, "m"); };

@@ -12,7 +12,7 @@
 namespace tessera::test {
 namespace {
 
-std::string json_errors_error_of(std::string_view text, StatusCode code = StatusCode::parse_error) {
+std::string json_error(std::string_view text, StatusCode code = StatusCode::parse_error) {
   const Result<Model> model = parse_json_model(text, "m.json");
   EXPECT_FALSE(model.ok()) << text.substr(0, 300);
   if (model.ok()) return {};
@@ -21,7 +21,7 @@ std::string json_errors_error_of(std::string_view text, StatusCode code = Status
 }
 /// The error of a model of this one surface, which stands on line 2.
 std::string error_in(const std::string& surface, StatusCode code = StatusCode::parse_error) {
-  return json_errors_error_of(json_with(surface), code);
+  return json_error(json_with(surface), code);
 }
 void expect_begin(const std::string& message, const std::string& begin) {
   EXPECT_EQ(message.substr(0, begin.size()), begin) << message;
@@ -30,38 +30,38 @@ void expect_words(const std::string& message, const std::string& words) {
   EXPECT_NE(message.find(words), std::string::npos) << message;
 }
 
-const std::string json_errors_square = R"("points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]])";
+const std::string json_square = R"("points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]])";
 
 TEST(JsonErrors, TextsThatAreNoJson) {
-  expect_begin(json_errors_error_of(""), "m.json:1: ");
-  expect_words(json_errors_error_of(""), "unexpected end of input");
-  expect_begin(json_errors_error_of(" \n\n"), "m.json:2: ");
-  expect_begin(json_errors_error_of("{\n\"format\": \"tessera\",\n\"version\" 1}"), "m.json:3: ");
-  expect_words(json_errors_error_of("{\n\"a\": 1,\n}"), "m.json:3: ");
-  expect_words(json_errors_error_of("{\"a\": [1, 2}"), "unexpected '}'");
-  expect_words(json_errors_error_of("{\"a\": nan}"), "last read: \"");
-  expect_words(json_errors_error_of("{} {}"), "m.json:1: ");
-  expect_words(json_errors_error_of("{\"a\":\n1e400}"), "m.json:2: number overflow");
-  expect_words(json_errors_error_of("{\"a\": \"\xff\"}"), "ill-formed UTF-8");
-  expect_words(json_errors_error_of("{\"a\": \"tab\t\"}"), "control character");
-  expect_words(json_errors_error_of("// no comments\n{}"), "m.json:1: ");
-  for (const char c : json_errors_error_of("{\"\x01\xfe\": 1}")) EXPECT_TRUE(c >= 0x20 && c < 0x7f);
+  expect_begin(json_error(""), "m.json:1: ");
+  expect_words(json_error(""), "unexpected end of input");
+  expect_begin(json_error(" \n\n"), "m.json:2: ");
+  expect_begin(json_error("{\n\"format\": \"tessera\",\n\"version\" 1}"), "m.json:3: ");
+  expect_words(json_error("{\n\"a\": 1,\n}"), "m.json:3: ");
+  expect_words(json_error("{\"a\": [1, 2}"), "unexpected '}'");
+  expect_words(json_error("{\"a\": nan}"), "last read: \"");
+  expect_words(json_error("{} {}"), "m.json:1: ");
+  expect_words(json_error("{\"a\":\n1e400}"), "m.json:2: number overflow");
+  expect_words(json_error("{\"a\": \"\xff\"}"), "ill-formed UTF-8");
+  expect_words(json_error("{\"a\": \"tab\t\"}"), "control character");
+  expect_words(json_error("// no comments\n{}"), "m.json:1: ");
+  for (const char c : json_error("{\"\x01\xfe\": 1}")) EXPECT_TRUE(c >= 0x20 && c < 0x7f);
 }
 
 TEST(JsonErrors, TextsThatAreNoModels) {
-  EXPECT_EQ(json_errors_error_of("[1, 2]"), "m.json:1: expected an object, found an array of 2");
-  EXPECT_EQ(json_errors_error_of("null"), "m.json:1: expected an object, found null");
-  EXPECT_EQ(json_errors_error_of("{}"), "m.json:1: \"format\" is missing");
-  EXPECT_EQ(json_errors_error_of("{\"format\":\n\"other\", \"version\": 1, \"surfaces\": []}"),
+  EXPECT_EQ(json_error("[1, 2]"), "m.json:1: expected an object, found an array of 2");
+  EXPECT_EQ(json_error("null"), "m.json:1: expected an object, found null");
+  EXPECT_EQ(json_error("{}"), "m.json:1: \"format\" is missing");
+  EXPECT_EQ(json_error("{\"format\":\n\"other\", \"version\": 1, \"surfaces\": []}"),
             "m.json:2: /format: expected \"tessera\", found \"other\"");
-  EXPECT_EQ(json_errors_error_of(R"({"format": "tessera", "surfaces": []})"), "m.json:1: \"version\" is missing");
-  EXPECT_EQ(json_errors_error_of(R"({"format": "tessera", "version": 2, "surfaces": []})", StatusCode::unsupported),
+  EXPECT_EQ(json_error(R"({"format": "tessera", "surfaces": []})"), "m.json:1: \"version\" is missing");
+  EXPECT_EQ(json_error(R"({"format": "tessera", "version": 2, "surfaces": []})", StatusCode::unsupported),
             "m.json:1: /version: found version 2, this reader knows version 1");
-  EXPECT_EQ(json_errors_error_of(R"({"format": "tessera", "version": "1", "surfaces": []})"),
+  EXPECT_EQ(json_error(R"({"format": "tessera", "version": "1", "surfaces": []})"),
             "m.json:1: /version: expected an integer from 1 to 1048576, found \"1\"");
-  EXPECT_EQ(json_errors_error_of(R"({"format": "tessera", "version": 1, "surfaces": []})"),
+  EXPECT_EQ(json_error(R"({"format": "tessera", "version": 1, "surfaces": []})"),
             "m.json:1: /surfaces: expected an array of surfaces, found an empty array");
-  EXPECT_EQ(json_errors_error_of(R"({"format": "tessera", "version": 1, "surface": []})"),
+  EXPECT_EQ(json_error(R"({"format": "tessera", "version": 1, "surface": []})"),
             "m.json:1: unknown key \"surface\"; known keys are format, version, description, surfaces");
   EXPECT_EQ(error_in("3"), "m.json:2: /surfaces/0: expected a surface, found 3");
   EXPECT_EQ(error_in("{}"), "m.json:2: /surfaces/0: \"kind\" is missing");
@@ -72,23 +72,22 @@ TEST(JsonErrors, TextsThatAreNoModels) {
 TEST(JsonErrors, LinesArePlacesOfTheValue) {
   // A number ends at the byte behind it, even if that ends the line.
   const std::string head = "{\"format\": \"tessera\",\n\"version\": 1,\n\"surfaces\": [\n";
-  EXPECT_EQ(json_errors_error_of(head + "7\n\n\n]}"), "m.json:4: /surfaces/0: expected a surface, found 7");
-  EXPECT_EQ(json_errors_error_of(head + "\n7]}"), "m.json:5: /surfaces/0: expected a surface, found 7");
-  EXPECT_EQ(json_errors_error_of(head + "true\n]}"), "m.json:4: /surfaces/0: expected a surface, found true");
-  EXPECT_EQ(json_errors_error_of(head + "\"x\"\n]}"), "m.json:4: /surfaces/0: expected a surface, found \"x\"");
-  EXPECT_EQ(json_errors_error_of(head + "[\n]\n]}"), "m.json:4: /surfaces/0: expected a surface, found an empty array");
-  EXPECT_EQ(json_errors_error_of(
-                head + "{\"kind\": \"bezier\", \"points\": [[[0,0,0],\n[0,1,\nnull]],\n[[1,0,0],[1,1,0]]]}]}"),
+  EXPECT_EQ(json_error(head + "7\n\n\n]}"), "m.json:4: /surfaces/0: expected a surface, found 7");
+  EXPECT_EQ(json_error(head + "\n7]}"), "m.json:5: /surfaces/0: expected a surface, found 7");
+  EXPECT_EQ(json_error(head + "true\n]}"), "m.json:4: /surfaces/0: expected a surface, found true");
+  EXPECT_EQ(json_error(head + "\"x\"\n]}"), "m.json:4: /surfaces/0: expected a surface, found \"x\"");
+  EXPECT_EQ(json_error(head + "[\n]\n]}"), "m.json:4: /surfaces/0: expected a surface, found an empty array");
+  EXPECT_EQ(json_error(head + "{\"kind\": \"bezier\", \"points\": [[[0,0,0],\n[0,1,\nnull]],\n[[1,0,0],[1,1,0]]]}]}"),
             "m.json:6: /surfaces/0/points/0/1/2: expected a number, found null");
 }
 
 TEST(JsonErrors, KeysAreKnownAndStandOnce) {
-  EXPECT_EQ(error_in(surface_of("bezier", json_errors_square + R"(, "wieghts": [])")),
+  EXPECT_EQ(error_in(surface_of("bezier", json_square + R"(, "wieghts": [])")),
             "m.json:2: /surfaces/0: unknown key \"wieghts\"; known keys are kind, name, description, placement, trims, "
             "degree, points, weights");
-  EXPECT_EQ(json_errors_error_of("{\"version\": 1,\n\"format\": 2,\n\"version\": 3}"),
+  EXPECT_EQ(json_error("{\"version\": 1,\n\"format\": 2,\n\"version\": 3}"),
             "m.json:3: the key \"version\" occurs twice in one object");
-  expect_words(error_in(surface_of("bezier", json_errors_square + ",\n" + json_errors_square)),
+  expect_words(error_in(surface_of("bezier", json_square + ",\n" + json_square)),
                "m.json:3: the key \"points\" occurs twice");
   expect_words(error_in(surface_of("sphere", R"("radius": 1, "axis": {"dir": [0,0,1]})")),
                "/surfaces/0/axis: unknown key \"dir\"; known keys are origin, direction, zero");
@@ -104,9 +103,9 @@ TEST(JsonErrors, ShapesOfNets) {
             "m.json:2: /surfaces/0/points/1: expected a row of points, found an empty array");
   EXPECT_EQ(error_in(surface_of("bezier", R"("points": {"a": 1})")),
             "m.json:2: /surfaces/0/points: expected rows of points, found an object");
-  EXPECT_EQ(error_in(surface_of("bezier", json_errors_square + R"(, "weights": [[1,1]])")),
+  EXPECT_EQ(error_in(surface_of("bezier", json_square + R"(, "weights": [[1,1]])")),
             "m.json:2: /surfaces/0/weights: expected 2 x 2, one per point, found 1 x 2");
-  EXPECT_EQ(error_in(surface_of("bezier", json_errors_square + R"(, "degree": [1, 2])")),
+  EXPECT_EQ(error_in(surface_of("bezier", json_square + R"(, "degree": [1, 2])")),
             "m.json:2: /surfaces/0/degree/1: the net is one of degree [1, 1]");
   expect_begin(error_in(surface_of("bezier", R"("points": [[[0,0,0],[0,1,0]]])"), StatusCode::unsupported_degree),
                "m.json:2: /surfaces/0: ");
@@ -119,28 +118,27 @@ TEST(JsonErrors, ShapesOfNets) {
 
 TEST(JsonErrors, WhatTheKindsRefuseHasItsPlace) {
   expect_begin(
-      error_in(surface_of("bezier", json_errors_square + R"(, "weights": [[1,1],[0,1]])"), StatusCode::invalid_weight),
+      error_in(surface_of("bezier", json_square + R"(, "weights": [[1,1],[0,1]])"), StatusCode::invalid_weight),
       "m.json:2: /surfaces/0: ");
   expect_begin(error_in(surface_of("sphere", R"("radius": -1)"), StatusCode::invalid_argument),
                "m.json:2: /surfaces/0: ");
-  expect_words(error_in(surface_of("b_spline",
-                                   R"("degree": 1, "knots_u": [0,0,1,1], "knots_v": [0,0,1], )" + json_errors_square)),
-               "/surfaces/0/knots_v: expected 4 knots, for 2 columns of points and degree 1, found 3");
-  expect_begin(error_in(surface_of("b_spline",
-                                   R"("degree": 1, "knots_u": [0,1,0,1], "knots_v": "clamped", )" + json_errors_square),
-                        StatusCode::invalid_argument),
-               "m.json:2: /surfaces/0: ");
-  expect_words(error_in(surface_of(
-                   "b_spline", R"("degree": 3, "knots_u": "clamped", "knots_v": "clamped", )" + json_errors_square)),
-               "/surfaces/0/knots_u: degree 3 needs 4 points or more, found 2");
-  expect_words(error_in(surface_of("b_spline", R"("degree": 16, "knots_u": [], "knots_v": [], )" + json_errors_square)),
-               "/surfaces/0/degree: expected an integer from 1 to 15, found 16");
   expect_words(
-      error_in(surface_of("b_spline", R"("degree": 1.5, "knots_u": [], "knots_v": [], )" + json_errors_square)),
-      "found 1.5");
-  expect_words(error_in(surface_of(
-                   "nurbs", R"("degree": 1, "knots_u": "clamped", "knots_v": "clamped", )" + json_errors_square)),
-               "\"weights\" is missing");
+      error_in(surface_of("b_spline", R"("degree": 1, "knots_u": [0,0,1,1], "knots_v": [0,0,1], )" + json_square)),
+      "/surfaces/0/knots_v: expected 4 knots, for 2 columns of points and degree 1, found 3");
+  expect_begin(
+      error_in(surface_of("b_spline", R"("degree": 1, "knots_u": [0,1,0,1], "knots_v": "clamped", )" + json_square),
+               StatusCode::invalid_argument),
+      "m.json:2: /surfaces/0: ");
+  expect_words(
+      error_in(surface_of("b_spline", R"("degree": 3, "knots_u": "clamped", "knots_v": "clamped", )" + json_square)),
+      "/surfaces/0/knots_u: degree 3 needs 4 points or more, found 2");
+  expect_words(error_in(surface_of("b_spline", R"("degree": 16, "knots_u": [], "knots_v": [], )" + json_square)),
+               "/surfaces/0/degree: expected an integer from 1 to 15, found 16");
+  expect_words(error_in(surface_of("b_spline", R"("degree": 1.5, "knots_u": [], "knots_v": [], )" + json_square)),
+               "found 1.5");
+  expect_words(
+      error_in(surface_of("nurbs", R"("degree": 1, "knots_u": "clamped", "knots_v": "clamped", )" + json_square)),
+      "\"weights\" is missing");
   expect_words(
       error_in(surface_of("quadric", R"("coefficients": {"a": 1, "b": 1, "c": 1, "k": 1}, "range": [[0,1],[0,1]])"),
                StatusCode::unsupported),
@@ -206,7 +204,7 @@ TEST(JsonErrors, ExpressionsNameCoordinateAndPlace) {
 
 TEST(JsonErrors, Placements) {
   const auto placed = [](const std::string& maps) {
-    return surface_of("bezier", json_errors_square + ", \"placement\": " + maps);
+    return surface_of("bezier", json_square + ", \"placement\": " + maps);
   };
   expect_words(error_in(placed(R"({"scale": 2})")),
                "/surfaces/0/placement: expected an array of maps, found an object");
@@ -220,18 +218,18 @@ TEST(JsonErrors, Placements) {
 
 TEST(JsonErrors, NestingIsLimited) {
   const std::string opened(1 << 20, '[');
-  EXPECT_EQ(json_errors_error_of(opened), "m.json:1: nested more than 64 deep");
+  EXPECT_EQ(json_error(opened), "m.json:1: nested more than 64 deep");
   std::string objects;
   for (int k = 0; k < 100000; ++k) objects += "{\"a\":";
-  EXPECT_EQ(json_errors_error_of(objects), "m.json:1: nested more than 64 deep");
-  EXPECT_EQ(json_errors_error_of(std::string(64, '[') + std::string(64, ']')),
+  EXPECT_EQ(json_error(objects), "m.json:1: nested more than 64 deep");
+  EXPECT_EQ(json_error(std::string(64, '[') + std::string(64, ']')),
             "m.json:1: expected an object, found an array of 1");
 }
 
 TEST(JsonErrors, HugeListsAreRefusedInTime) {
   std::string keys = "{";
   for (int k = 0; k < 200000; ++k) keys += "\"k" + std::to_string(k) + "\":0,";
-  expect_words(json_errors_error_of(keys + "\"k7\":0}"), "the key \"k7\" occurs twice");
+  expect_words(json_error(keys + "\"k7\":0}"), "the key \"k7\" occurs twice");
   std::string zeros = "[0";
   for (int k = 0; k < 500000; ++k) zeros += ",0";
   expect_words(error_in(surface_of("bezier", "\"points\": [" + zeros + "]]")),

@@ -12,7 +12,7 @@ namespace tessera::test {
 namespace {
 
 /// A surface of each kind, without its closing brace.
-const std::vector<std::pair<std::string, std::string>> json_trims_kinds{
+const std::vector<std::pair<std::string, std::string>> curve_kinds{
     {"bezier", R"("points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]])"},
     {"tensor", R"("basis": "power", "geometry": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]])"},
     {"b_spline",
@@ -39,7 +39,7 @@ const std::vector<std::pair<std::string, std::string>> json_trims_kinds{
 const std::string circle = R"({"curves": [{"kind": "circle", "center": [0.5, 0.25], "radius": 0.125}], "hole": true})";
 
 TEST(JsonTrims, SurfacesOfEveryKindHaveThem) {
-  for (const auto& [kind, fields] : json_trims_kinds) {
+  for (const auto& [kind, fields] : curve_kinds) {
     const Model model = parsed(json_with(surface_of(kind, fields + R"(, "trims": [)" + circle + "]")));
     EXPECT_TRUE(model.warnings.empty());
     const std::vector<TrimLoop>& loops = *model.surfaces.at(0).trims;
@@ -86,7 +86,7 @@ TEST(JsonTrims, SplinesAreReadBitForBit) {
       loop.curves.push_back(rational ? value_of(Curve::nurbs(degree, points, curve.weights(), curve.knots()))
                                      : value_of(Curve::b_spline(degree, points, curve.knots())));
     }
-    const std::string fields = json_trims_kinds[0].second + R"(, "trims": [)" + json(loop) + "]";
+    const std::string fields = curve_kinds[0].second + R"(, "trims": [)" + json(loop) + "]";
     EXPECT_EQ(parsed(json_with(surface_of("bezier", fields))).surfaces[0].trims, std::vector{loop});
   }
 }
@@ -97,7 +97,7 @@ TEST(JsonTrims, EveryKindOfCurveIsRead) {
       {"kind": "nurbs", "degree": 1, "knots": "clamped", "points": [[1, 1], [0, 1]], "weights": [1, 2]},
       {"kind": "b_spline", "degree": 2, "knots": [0, 0, 0, 1, 1, 1], "points": [[0, 1], [0.25, 1], [0.25, 0]], "domain": [0, 0.5]},
       {"kind": "circle", "center": ["1/3", 0.5], "radius": "1/8", "arcs": 3})";
-  const std::string fields = json_trims_kinds[0].second + R"(, "trims": [{"curves": [)" + curves + "]}]";
+  const std::string fields = curve_kinds[0].second + R"(, "trims": [{"curves": [)" + curves + "]}]";
   const std::vector<TrimLoop> loops = parsed(json_with(surface_of("bezier", fields))).surfaces[0].trims;
   ASSERT_EQ(loops.size(), 1u);
   ASSERT_EQ(loops[0].curves.size(), 4u);
@@ -110,29 +110,28 @@ TEST(JsonTrims, EveryKindOfCurveIsRead) {
     const Vec3 p = position(loops[0].curves[3], k / 100.0);
     EXPECT_NEAR(std::hypot(p.x - 1.0 / 3, p.y - 0.5), 0.125, 1e-16);
   }
-  EXPECT_TRUE(parsed(json_with(surface_of("bezier", json_trims_kinds[0].second + R"(, "trims": [])")))
-                  .surfaces[0]
-                  .trims->empty());
+  EXPECT_TRUE(
+      parsed(json_with(surface_of("bezier", curve_kinds[0].second + R"(, "trims": [])"))).surfaces[0].trims->empty());
 }
 
-std::string json_trims_error_in(const std::string& trims) {
-  const Result<Model> model = parse_json_model(
-      json_with(surface_of("bezier", json_trims_kinds[0].second + ",\n\"trims\": " + trims)), "m.json");
+std::string trims_error(const std::string& trims) {
+  const Result<Model> model =
+      parse_json_model(json_with(surface_of("bezier", curve_kinds[0].second + ",\n\"trims\": " + trims)), "m.json");
   EXPECT_FALSE(model.ok()) << trims;
   return model.ok() ? "" : model.status().message();
 }
 /// The error of this one curve, which stands on line 3.
-std::string error_in_curve(const std::string& curve) { return json_trims_error_in("[{\"curves\": [" + curve + "]}]"); }
+std::string error_in_curve(const std::string& curve) { return trims_error("[{\"curves\": [" + curve + "]}]"); }
 
 TEST(JsonTrims, ErrorsNameTheirPlace) {
-  EXPECT_EQ(json_trims_error_in("1"), "m.json:3: /surfaces/0/trims: expected an array of loops, found 1");
-  EXPECT_EQ(json_trims_error_in("[[]]"), "m.json:3: /surfaces/0/trims/0: expected an object, found an empty array");
-  EXPECT_EQ(json_trims_error_in("[{}]"), "m.json:3: /surfaces/0/trims/0: \"curves\" is missing");
-  EXPECT_EQ(json_trims_error_in(R"([{"curves": []}])"),
+  EXPECT_EQ(trims_error("1"), "m.json:3: /surfaces/0/trims: expected an array of loops, found 1");
+  EXPECT_EQ(trims_error("[[]]"), "m.json:3: /surfaces/0/trims/0: expected an object, found an empty array");
+  EXPECT_EQ(trims_error("[{}]"), "m.json:3: /surfaces/0/trims/0: \"curves\" is missing");
+  EXPECT_EQ(trims_error(R"([{"curves": []}])"),
             "m.json:3: /surfaces/0/trims/0/curves: expected an array of curves, found an empty array");
-  EXPECT_EQ(json_trims_error_in("[" + circle + ",\n{\"curve\": 1}]"),
+  EXPECT_EQ(trims_error("[" + circle + ",\n{\"curve\": 1}]"),
             "m.json:4: /surfaces/0/trims/1: unknown key \"curve\"; known keys are curves, hole");
-  EXPECT_EQ(json_trims_error_in(R"([{"hole": 1, "curves": [{"kind": "circle", "center": [0, 0], "radius": 1}]}])"),
+  EXPECT_EQ(trims_error(R"([{"hole": 1, "curves": [{"kind": "circle", "center": [0, 0], "radius": 1}]}])"),
             "m.json:3: /surfaces/0/trims/0/hole: expected true or false, found 1");
   EXPECT_EQ(error_in_curve("7"), "m.json:3: /surfaces/0/trims/0/curves/0: expected a curve, found 7");
   EXPECT_EQ(error_in_curve("{}"), "m.json:3: /surfaces/0/trims/0/curves/0: \"kind\" is missing");

@@ -67,10 +67,10 @@ std::vector<Mesh> pieces_of(std::size_t count, const Kind& kind) {
   return pieces;
 }
 
-const std::vector<Kind> mesh_pieces_kinds{{},
-                                          {{.normals = false, .parameters = false, .patches = false}},
-                                          {{.normals = true, .parameters = false, .patches = false}, true},
-                                          {{.normals = false, .parameters = true, .patches = true}, true, true}};
+const std::vector<Kind> file_kinds{{},
+                                   {{.normals = false, .parameters = false, .patches = false}},
+                                   {{.normals = true, .parameters = false, .patches = false}, true},
+                                   {{.normals = false, .parameters = true, .patches = true}, true, true}};
 
 PlyPieces ply_of(const std::string& path, const MeshTotals& totals) {
   return *PlyPieces::make(*OutputFile::make(path), totals);
@@ -78,7 +78,7 @@ PlyPieces ply_of(const std::string& path, const MeshTotals& totals) {
 
 TEST(PlyPieces, BytesAreThoseOfTheWhole) {
   const ScratchFolder folder;
-  for (const Kind& kind : mesh_pieces_kinds)
+  for (const Kind& kind : file_kinds)
     for (const std::size_t count : {1u, 2u, 3u, 7u}) {
       const std::vector<Mesh> pieces = pieces_of(count, kind);
       std::vector<PiecePlace> places;
@@ -96,7 +96,7 @@ TEST(PlyPieces, BytesAreThoseOfTheWhole) {
 
 TEST(PlyPieces, RecordsPackedAtTheirOffsetsMakeTheFile) {
   const ScratchFolder folder;
-  for (const Kind& kind : mesh_pieces_kinds) {
+  for (const Kind& kind : file_kinds) {
     const std::vector<Mesh> pieces = pieces_of(3, kind);
     std::vector<PiecePlace> places;
     const Mesh whole = joined(pieces, places);
@@ -155,7 +155,7 @@ TEST(PlyPieces, TotalsBeyondIndicesNameTheWayOut) {
   // Places are in 64 bit.
   const Result<PlyLayout> large = PlyLayout::make({.vertices = 2000000000, .triangles = std::uint64_t{1} << 40});
   ASSERT_TRUE(large.ok());
-  const Mesh mesh = piece_of(0, mesh_pieces_kinds[1]);
+  const Mesh mesh = piece_of(0, file_kinds[1]);
   const PiecePlace place{1999999000, (std::uint64_t{1} << 40) - 1800};
   ASSERT_TRUE(large->check(mesh, place).ok());
   EXPECT_EQ(
@@ -199,7 +199,7 @@ PlyStream stream_of(const std::string& path) { return *PlyStream::make(*OutputFi
 
 TEST(PlyStream, BytesAreThoseOfTheWhole) {
   const ScratchFolder folder;
-  for (const Kind& kind : mesh_pieces_kinds)
+  for (const Kind& kind : file_kinds)
     for (const std::size_t count : {1u, 2u, 3u, 7u}) {
       const std::vector<Mesh> pieces = pieces_of(count, kind);
       std::vector<PiecePlace> places;
@@ -276,7 +276,7 @@ std::vector<T> array_of(const std::string& text, const std::string& name) {
 
 TEST(VtpPieces, ArraysAreThoseOfTheMesh) {
   const ScratchFolder folder;
-  for (const Kind& kind : mesh_pieces_kinds) {
+  for (const Kind& kind : file_kinds) {
     const Mesh mesh = piece_of(3, kind);
     ASSERT_TRUE(write_vtp_piece(mesh, MeshTotals::of(mesh), folder / "m.pvtp", 12, 5000).ok());
     const std::string text = content_of(folder / "m_0012.vtp");
@@ -321,7 +321,7 @@ TEST(VtpPieces, TheIndexNamesAllPieces) {
     ASSERT_TRUE(write_vtp_piece(k == 1 ? Mesh{} : piece_of(k, {}), totals, index, k).ok());
   ASSERT_TRUE(write_pvtp(totals, index, 3).ok());
   EXPECT_EQ(array_of<float>(content_of(folder / "a & b_0001.vtp"), "Normals").size(), 0u);  // VTK looks for it
-  EXPECT_EQ(write_vtp_piece(piece_of(0, mesh_pieces_kinds[1]), totals, index, 3).code(), StatusCode::count_mismatch);
+  EXPECT_EQ(write_vtp_piece(piece_of(0, file_kinds[1]), totals, index, 3).code(), StatusCode::count_mismatch);
   EXPECT_EQ(folder.names(), (Names{"a & b.pvtp", "a & b_0000.vtp", "a & b_0001.vtp", "a & b_0002.vtp"}));
   const std::string text = content_of(index);
   for (const char* name : {"a &amp; b_0000.vtp", "a &amp; b_0001.vtp", "a &amp; b_0002.vtp"})

@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-std::string obj_freeform_errors_error_of(std::string_view text) {
+std::string freeform_error(std::string_view text) {
   const Result<Model> model = parse_obj_freeform(text, "m.obj");
   EXPECT_FALSE(model.ok()) << text;
   return model.status().message();
@@ -25,38 +25,36 @@ std::string spoiled(const std::string& from, const std::string& to, std::string 
 
 TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
   EXPECT_EQ(
-      obj_freeform_errors_error_of(spoiled("v 1 0 0", "v 1 0")),
+      freeform_error(spoiled("v 1 0 0", "v 1 0")),
       "m.obj:2: expected 3 finite coordinates after v, perhaps a weight and a colour of 3, found the end of the line");
   EXPECT_EQ(
-      obj_freeform_errors_error_of(spoiled("v 1 0 0", "v 1 0 0 1 1")),
+      freeform_error(spoiled("v 1 0 0", "v 1 0 0 1 1")),
       "m.obj:2: expected 3 finite coordinates after v, perhaps a weight and a colour of 3, found the end of the line");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("v 1 0 0", "v 1 0 0 1 1 1 1 1")),
+  EXPECT_EQ(freeform_error(spoiled("v 1 0 0", "v 1 0 0 1 1 1 1 1")),
             "m.obj:2: expected the end of the line, found \"1\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("v 1 0 0", "vp 1 2 3 4")),
-            "m.obj:2: expected the end of the line, found \"4\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("bezier", "rat nurbs")),
+  EXPECT_EQ(freeform_error(spoiled("v 1 0 0", "vp 1 2 3 4")), "m.obj:2: expected the end of the line, found \"4\"");
+  EXPECT_EQ(freeform_error(spoiled("bezier", "rat nurbs")),
             "m.obj:5: expected bezier, bspline, cardinal, taylor or bmatrix after cstype, perhaps with rat before it, "
             "found \"nurbs\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("deg 1 1", "deg 1.5 1")),
+  EXPECT_EQ(freeform_error(spoiled("deg 1 1", "deg 1.5 1")),
             "m.obj:6: expected 1 or 2 degrees after deg, found \"1.5\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("deg 1 1", "step")),
+  EXPECT_EQ(freeform_error(spoiled("deg 1 1", "step")),
             "m.obj:6: expected 1 or 2 steps after step, found the end of the line");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("parm u 0 1", "parm w 0 1")),
-            "m.obj:8: expected u or v after parm, found \"w\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("parm u 0 1", "parm u 0 1,5")),
+  EXPECT_EQ(freeform_error(spoiled("parm u 0 1", "parm w 0 1")), "m.obj:8: expected u or v after parm, found \"w\"");
+  EXPECT_EQ(freeform_error(spoiled("parm u 0 1", "parm u 0 1,5")),
             "m.obj:8: expected finite numbers after parm u, found \"1,5\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("parm u 0 1", "parm u")),
+  EXPECT_EQ(freeform_error(spoiled("parm u 0 1", "parm u")),
             "m.obj:8: expected numbers after parm u, found the end of the line");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0")),
+  EXPECT_EQ(freeform_error(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0")),
             "m.obj:7: expected 4 finite numbers after surf, the ranges of u and v, found the end of the line");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0 1 1")),
+  EXPECT_EQ(freeform_error(spoiled("surf 0 1 0 1 1 2 3 4", "surf 0 1 0 1 1")),
             "m.obj:7: expected at least 2 control points, found the end of the line");
   // A malformed continuation, as the specification's own example of stech prints it.
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("1 2 3 4", "1 2 \\ 3 4")),
+  EXPECT_EQ(freeform_error(spoiled("1 2 3 4", "1 2 \\ 3 4")),
             "m.obj:7: expected an index of a control point, found \"\\\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("deg 1 1", "1 1")),
+  EXPECT_EQ(freeform_error(spoiled("deg 1 1", "1 1")),
             "m.obj:6: expected a statement (is the line above to be continued, without a \\ at its end?), found \"1\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(std::string("\0\x01v 1 2 3\n", 9)),
+  EXPECT_EQ(freeform_error(std::string("\0\x01v 1 2 3\n", 9)),
             "m.obj:1: expected a statement (is the line above to be continued, without a \\ at its end?), found "
             "\"\\x00\\x01v\"");
 }
@@ -64,26 +62,26 @@ TEST(ObjFreeformErrors, SyntaxIsNamedWithItsLine) {
 TEST(ObjFreeformErrors, ReferencesStayWithinWhatStandsAbove) {
   const std::string vertices = "an index into the vertices above, 1 to 4 or -4 to -1";
   for (const char* index : {"0", "5", "-5", "9223372036854775807", "-9223372036854775808"})
-    EXPECT_EQ(obj_freeform_errors_error_of(spoiled("2 3 4", std::string("2 3 ") + index)),
+    EXPECT_EQ(freeform_error(spoiled("2 3 4", std::string("2 3 ") + index)),
               "m.obj:7: expected " + vertices + ", found \"" + index + "\"");
   for (const char* index : {"x", "1.0", "99999999999999999999", "/1"}) {
-    const std::string message = obj_freeform_errors_error_of(spoiled("2 3 4", std::string("2 3 ") + index));
+    const std::string message = freeform_error(spoiled("2 3 4", std::string("2 3 ") + index));
     EXPECT_EQ(message.rfind("m.obj:7: expected an index of a control point, found", 0), 0u) << message;
   }
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("2 3 4", "2 3 4/1")),
+  EXPECT_EQ(freeform_error(spoiled("2 3 4", "2 3 4/1")),
             "m.obj:7: expected no index, as there are no vt lines above, found \"1\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("2 3 4", "2 3 4//1")),
+  EXPECT_EQ(freeform_error(spoiled("2 3 4", "2 3 4//1")),
             "m.obj:7: expected no index, as there are no vn lines above, found \"1\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("2 3 4", "2 3 4/")),
+  EXPECT_EQ(freeform_error(spoiled("2 3 4", "2 3 4/")),
             "m.obj:7: expected an index of a texture vertex, found the end of the line");
-  EXPECT_EQ(obj_freeform_errors_error_of("cstype bezier\ndeg 1 1\n" + bilinear)
+  EXPECT_EQ(freeform_error("cstype bezier\ndeg 1 1\n" + bilinear)
                 .rfind("m.obj:5: expected no index, as there are no vertices", 0),
             0u);
 }
 
 TEST(ObjFreeformErrors, SurfacesThatDoNotFitAreNamed) {
   const auto surface = [](const std::string& from, const std::string& to) {
-    return obj_freeform_errors_error_of("g a\n" + spoiled(from, to));
+    return freeform_error("g a\n" + spoiled(from, to));
   };
   const std::string place = "m.obj:8: surface 0 (a): ";
   EXPECT_EQ(surface("cstype bezier", "#"), place + "there is no cstype above");
@@ -131,23 +129,19 @@ TEST(ObjFreeformErrors, TheKindsOwnErrorsKeepTheirCode) {
 }
 
 TEST(ObjFreeformErrors, BodiesAreClosedAndNothingBelongsNowhere) {
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("end\n", "")),
-            "m.obj:7: the file ends within this surf: it has no end statement");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("end\n", bilinear)),
+  EXPECT_EQ(freeform_error(spoiled("end\n", "")), "m.obj:7: the file ends within this surf: it has no end statement");
+  EXPECT_EQ(freeform_error(spoiled("end\n", bilinear)),
             "m.obj:7: this surf has no end statement before the next element");
-  EXPECT_EQ(obj_freeform_errors_error_of(four_vertices + "end\n"),
-            "m.obj:5: this end has no surf, curv or curv2 above");
-  EXPECT_EQ(obj_freeform_errors_error_of(four_vertices + "trim 0 1 1\n"),
-            "m.obj:5: a trim belongs between a surf and its end");
-  EXPECT_EQ(obj_freeform_errors_error_of(four_vertices + bilinear + "hole 0 1 1\n"),
+  EXPECT_EQ(freeform_error(four_vertices + "end\n"), "m.obj:5: this end has no surf, curv or curv2 above");
+  EXPECT_EQ(freeform_error(four_vertices + "trim 0 1 1\n"), "m.obj:5: a trim belongs between a surf and its end");
+  EXPECT_EQ(freeform_error(four_vertices + bilinear + "hole 0 1 1\n"),
             "m.obj:11: a hole belongs between a surf and its end");
 }
 
 TEST(ObjFreeformErrors, TrimsReferToCurvesAboveAndStayOnThem) {
   const std::string curve = "vp 0.2 0.2\nvp 0.8 0.2\nvp 3\ncstype bezier\ndeg 1\ncurv2 1 2\nparm u 0 1\nend\n";
   const auto trimmed = [&](const std::string& trim) {
-    return obj_freeform_errors_error_of(four_vertices + curve + bilinear.substr(0, bilinear.size() - 4) + trim +
-                                        "\nend\n");
+    return freeform_error(four_vertices + curve + bilinear.substr(0, bilinear.size() - 4) + trim + "\nend\n");
   };
   EXPECT_EQ(trimmed("trim 0 1 2"),
             "m.obj:18: expected an index into the curv2 elements above, 1 to 1 or -1 to -1, found \"2\"");
@@ -156,24 +150,22 @@ TEST(ObjFreeformErrors, TrimsReferToCurvesAboveAndStayOnThem) {
   EXPECT_EQ(trimmed("trim 0 nan 1"), "m.obj:18: expected the parameter where the curve ends, found \"nan\"");
   EXPECT_EQ(trimmed("trim 0 1 1 0 2 1"), "m.obj:18: curv2 1 runs from 0 to 1, it has no part from 0 to 2");
   EXPECT_EQ(trimmed("trim 0.5 0.5 1"), "m.obj:18: curv2 1 runs from 0 to 1, it has no part from 0.5 to 0.5");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("curv2 1 2", "curv2 1 3", curve)),
+  EXPECT_EQ(freeform_error(spoiled("curv2 1 2", "curv2 1 3", curve)),
             "m.obj:6: expected the index of a vp line with 2 coordinates, found \"3\"");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("parm u 0 1", "parm u 0 1 2", curve)),
+  EXPECT_EQ(freeform_error(spoiled("parm u 0 1", "parm u 0 1 2", curve)),
             "m.obj:6: curv2 1: its parameters and degree need 3 control points, found 2");
-  EXPECT_EQ(obj_freeform_errors_error_of(spoiled("parm u 0 1", "", curve)), "m.obj:6: curv2 1: parm u is missing");
+  EXPECT_EQ(freeform_error(spoiled("parm u 0 1", "", curve)), "m.obj:6: curv2 1: parm u is missing");
 }
 
 TEST(ObjFreeformErrors, NumbersThatAreNotFiniteAreErrorsWithTheirLine) {
   for (const char* bad : {"nan", "-nan", "inf", "-Infinity", "1e400", "-1e400", "0x1p3"}) {
-    EXPECT_EQ(obj_freeform_errors_error_of(spoiled("v 1 0 0", std::string("v 1 0 ") + bad))
-                  .rfind("m.obj:2: expected 3 finite", 0),
+    EXPECT_EQ(freeform_error(spoiled("v 1 0 0", std::string("v 1 0 ") + bad)).rfind("m.obj:2: expected 3 finite", 0),
               0u);
-    EXPECT_EQ(obj_freeform_errors_error_of(spoiled("surf 0 1 0 1", std::string("surf 0 1 0 ") + bad))
+    EXPECT_EQ(freeform_error(spoiled("surf 0 1 0 1", std::string("surf 0 1 0 ") + bad))
                   .rfind("m.obj:7: expected 4 finite", 0),
               0u);
-    EXPECT_EQ(obj_freeform_errors_error_of(spoiled("parm u 0 1", std::string("parm u 0 ") + bad))
-                  .rfind("m.obj:8: expected finite", 0),
-              0u);
+    EXPECT_EQ(
+        freeform_error(spoiled("parm u 0 1", std::string("parm u 0 ") + bad)).rfind("m.obj:8: expected finite", 0), 0u);
   }
   const Model large = model_of(spoiled("v 1 1 1", "v 1e300 -1e300 1e300"));  // any finite number will do
   EXPECT_EQ(large.surfaces.size(), 1u);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr double obj_freeform_rounding = 0x1p-52;
+constexpr double freeform_rounding = 0x1p-52;
 
 TEST(ObjFreeform, BSplineSurfacesComeBackNumberByNumber) {
   Random random(1);
@@ -64,7 +64,7 @@ void expect_pieces(const Surface& surface, std::span<const double> parm_u, std::
       for (int k = 0; k < 8; ++k) {
         const double s = uniform(random, 0.01, 0.99), t = uniform(random, 0.01, 0.99);
         const double u = parm_u[i] + s * (parm_u[i + 1] - parm_u[i]), v = parm_v[j] + t * (parm_v[j + 1] - parm_v[j]);
-        EXPECT_LE(max_abs(position(surface, u, v) - piece(i, j, s, t)), 64 * obj_freeform_rounding * 4);
+        EXPECT_LE(max_abs(position(surface, u, v) - piece(i, j, s, t)), 64 * freeform_rounding * 4);
       }
 }
 
@@ -128,7 +128,7 @@ TEST(ObjFreeform, CardinalSurfacesAreCatmullRomSplines) {
       return blended(points, used, count_u, i, j, 3, 3, catmull_rom, s, t);
     });
     for (std::size_t i = 0; i < parm_u.size(); ++i)  // all points but those of the border
-      EXPECT_LE(max_abs(position(surface, parm_u[i], -2) - points[count_u + i + 1]), 8 * obj_freeform_rounding);
+      EXPECT_LE(max_abs(position(surface, parm_u[i], -2) - points[count_u + i + 1]), 8 * freeform_rounding);
   }
 }
 
@@ -206,7 +206,7 @@ TEST(ObjFreeform, APartOfTheParametersIsTheSameSurfaceThere) {
     const Surface& same = all.surfaces[all.surfaces.size() == 1 ? 0 : 1].surface;
     for (int k = 0; k < 20; ++k) {
       const double u = uniform(random, part.u0, part.u1), v = uniform(random, part.v0, part.v1);
-      EXPECT_LE(max_abs(position(some.surfaces[0].surface, u, v) - position(same, u, v)), 256 * obj_freeform_rounding)
+      EXPECT_LE(max_abs(position(some.surfaces[0].surface, u, v) - position(same, u, v)), 256 * freeform_rounding)
           << type;
     }
     EXPECT_TRUE(make_patch_set(some).ok());
@@ -343,8 +343,7 @@ TEST(ObjFreeform, TrimmingCurvesOfEveryTypeAreTheirFormulas) {
     for (std::size_t piece = 0; piece < 2; ++piece)
       for (const double s : {0.1, 0.5, 0.9}) {
         const Vec3 wanted = blended(points, {}, count, piece * step, 0, 3, 0, blend, s, 0);
-        EXPECT_LE(max_abs(at(loop, parm[piece] + s * (parm[piece + 1] - parm[piece])) - wanted),
-                  64 * obj_freeform_rounding)
+        EXPECT_LE(max_abs(at(loop, parm[piece] + s * (parm[piece + 1] - parm[piece])) - wanted), 64 * freeform_rounding)
             << type;
       }
   }

@@ -37,7 +37,7 @@ struct Example {
   Blend blend;  // of both directions, over the range of the one piece
   std::string misprint = {}, correction = {};
 };
-const std::vector<Example> obj_specification_examples{
+const std::vector<Example> specified_examples{
     {"ex3_bspline_surface.obj", bspline_3, "7 8 1 2 3 4\n", "surf 0 1 0 1 13 14 15 16 9 10 11 12 5 6 7 8 1 2 3 4\n"},
     {"ex4_cardinal_surface.obj", cardinal},
     {"ex5_rational_bspline_surface.obj", bezier_2},  // open knots without inner ones: a Bezier patch
@@ -58,7 +58,7 @@ struct Printed {
   std::vector<Point4> points;
 };
 
-Printed obj_specification_printed(std::string text) {
+Printed printed_number(std::string text) {
   for (std::size_t at; (at = text.find("\\\n")) != std::string::npos;) text.replace(at, 2, " ");
   std::vector<Point4> vertices;
   Printed result;
@@ -110,7 +110,7 @@ class ObjSpecification : public testing::Test {
     return text.replace(at, example.misprint.size(), example.correction);
   }
   ModelSurface surface_of(const std::string& file) const {
-    for (const Example& example : obj_specification_examples)
+    for (const Example& example : specified_examples)
       if (example.file == file) return parse_obj_freeform(text_of(example), file)->surfaces.at(0);
     throw std::runtime_error(file);
   }
@@ -118,12 +118,12 @@ class ObjSpecification : public testing::Test {
 };
 
 TEST_F(ObjSpecification, SurfacesAreTheirFormulas) {
-  for (const Example& example : obj_specification_examples) {
+  for (const Example& example : specified_examples) {
     const std::string text = text_of(example);
     const Result<Model> model = parse_obj_freeform(text, example.file);
     ASSERT_TRUE(model.ok()) << model.status().message();
     ASSERT_EQ(model->surfaces.size(), 1u);
-    const Printed surface = obj_specification_printed(text);
+    const Printed surface = printed_number(text);
     const auto [u0, u1, v0, v1] = surface.range;
     EXPECT_EQ(domain(model->surfaces[0].surface), (Domain{u0, u1, v0, v1})) << example.file;
     for (double s = 0; s <= 1; s += 0.125)

@@ -13,7 +13,7 @@ using Indices = std::vector<std::uint32_t>;
 
 const std::string obj_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-std::string obj_error_of(const std::string& text) {
+std::string obj_error(const std::string& text) {
   const Result<Mesh> mesh = parse_obj(text, "m.obj");
   EXPECT_FALSE(mesh.ok()) << text;
   return mesh.ok() ? "" : mesh.status().message();
@@ -71,24 +71,24 @@ TEST(Obj, LinesMayBeContinued) {
 }
 
 TEST(Obj, ErrorsNameTheLine) {
-  EXPECT_EQ(obj_error_of("v 0 0\n"), "m.obj:1: expected 3 numbers after v, found the end of the line");
-  EXPECT_EQ(obj_error_of("v 0 0 0\nv 0 x 0\n"), "m.obj:2: expected 3 numbers after v, found \"x\"");
-  EXPECT_EQ(obj_error_of("v 0 0 0 1 1 1 1\n"), "m.obj:1: expected the end of the line, found \"1\"");
-  EXPECT_EQ(obj_error_of(obj_square + "f 1 2\n"),
+  EXPECT_EQ(obj_error("v 0 0\n"), "m.obj:1: expected 3 numbers after v, found the end of the line");
+  EXPECT_EQ(obj_error("v 0 0 0\nv 0 x 0\n"), "m.obj:2: expected 3 numbers after v, found \"x\"");
+  EXPECT_EQ(obj_error("v 0 0 0 1 1 1 1\n"), "m.obj:1: expected the end of the line, found \"1\"");
+  EXPECT_EQ(obj_error(obj_square + "f 1 2\n"),
             "m.obj:5: expected at least 3 corners after f, found the end of the line");
-  EXPECT_EQ(obj_error_of(obj_square + "f 1 2 5\n"),
+  EXPECT_EQ(obj_error(obj_square + "f 1 2 5\n"),
             "m.obj:5: expected an index into the vertices above, 1 to 4 or -4 to -1, found \"5\"");
-  EXPECT_EQ(obj_error_of(obj_square + "f 1 2 0\n"),
+  EXPECT_EQ(obj_error(obj_square + "f 1 2 0\n"),
             "m.obj:5: expected an index into the vertices above, 1 to 4 or -4 to -1, found \"0\"");
-  EXPECT_EQ(obj_error_of(obj_square + "f 1 2 -5\n"),
+  EXPECT_EQ(obj_error(obj_square + "f 1 2 -5\n"),
             "m.obj:5: expected an index into the vertices above, 1 to 4 or -4 to -1, found \"-5\"");
-  EXPECT_EQ(obj_error_of(obj_square + "f 1 2 3.5\n"), "m.obj:5: expected an index of a corner, found \"3.5\"");
-  EXPECT_EQ(obj_error_of(obj_square + "f 1/1 2/2 3/3\n"),
+  EXPECT_EQ(obj_error(obj_square + "f 1 2 3.5\n"), "m.obj:5: expected an index of a corner, found \"3.5\"");
+  EXPECT_EQ(obj_error(obj_square + "f 1/1 2/2 3/3\n"),
             "m.obj:5: expected no index, as there are no vt lines above, found \"1\"");
-  EXPECT_EQ(obj_error_of("curv2 1 2\n"),
+  EXPECT_EQ(obj_error("curv2 1 2\n"),
             "m.obj:1: expected a line of a mesh (v, vt, vn, f, g, o, s, usemtl, mtllib), found \"curv2\"");
-  EXPECT_EQ(obj_error_of("# nothing\n"), "m.obj:1: expected vertices (v x y z), found the end of the file");
-  EXPECT_EQ(obj_error_of("v 0 0 0\nf 99999999999999999999 1 1\n"),
+  EXPECT_EQ(obj_error("# nothing\n"), "m.obj:1: expected vertices (v x y z), found the end of the file");
+  EXPECT_EQ(obj_error("v 0 0 0\nf 99999999999999999999 1 1\n"),
             "m.obj:2: expected an index of a corner, found \"99999999999999999999\"");
 }
 

@@ -20,7 +20,7 @@ const std::string ascii = "ply\nformat ascii 1.0\n";
 const std::string vertex3 = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
 const std::string face1 = "element face 1\nproperty list uchar int vertex_indices\n";
 
-std::string ply_error_of(const std::string& text) {
+std::string ply_error(const std::string& text) {
   const Result<Mesh> mesh = parse_ply(text, "m.ply");
   EXPECT_FALSE(mesh.ok()) << text;
   return mesh.ok() ? "" : mesh.status().message();
@@ -94,58 +94,58 @@ TEST(Ply, TheFileIsAsLongAsItsHeaderSays) {
 TEST(Ply, HugeCountsAllocateNothing) {
   for (const std::string format : {"ascii", "binary_little_endian"}) {
     const std::string begin = "ply\nformat " + format + " 1.0\n";
-    const std::string message = ply_error_of(begin +
-                                             "element vertex 4000000000000\nproperty float x\nproperty float y\n"
-                                             "property float z\nend_header\n1 2 3\n");
+    const std::string message = ply_error(begin +
+                                          "element vertex 4000000000000\nproperty float x\nproperty float y\n"
+                                          "property float z\nend_header\n1 2 3\n");
     EXPECT_NE(message.find("the header states 4000000000000 vertex records; the file is too short"), std::string::npos)
         << message;
     const std::string faces =
-        ply_error_of(begin + "element face 9223372036854775807\nproperty list uchar int vertex_indices\nend_header\n");
+        ply_error(begin + "element face 9223372036854775807\nproperty list uchar int vertex_indices\nend_header\n");
     EXPECT_NE(faces.find("too short"), std::string::npos) << faces;
   }
   std::string list =
       "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n";
   put<std::uint32_t>(list, 4000000000u);
-  EXPECT_EQ(ply_error_of(list), "m.ply: the file ends in face 1 of 1");
+  EXPECT_EQ(ply_error(list), "m.ply: the file ends in face 1 of 1");
 }
 
 TEST(Ply, ErrorsNameThePlace) {
-  EXPECT_EQ(ply_error_of("plx\n"), "m.ply:1: expected ply, found \"plx\"");
-  EXPECT_EQ(ply_error_of("ply\nend_header\n"), "m.ply:2: expected format, before end_header, found \"end_header\"");
-  EXPECT_EQ(ply_error_of("ply\nformat binary_big_endian 1.0\n"), "m.ply:2: unsupported format binary_big_endian");
-  EXPECT_EQ(ply_error_of("ply\nformat ascii 2.0\n"), "m.ply:2: expected the format's version 1.0, found \"2.0\"");
-  EXPECT_EQ(ply_error_of(ascii + "element vertex -1\n"),
+  EXPECT_EQ(ply_error("plx\n"), "m.ply:1: expected ply, found \"plx\"");
+  EXPECT_EQ(ply_error("ply\nend_header\n"), "m.ply:2: expected format, before end_header, found \"end_header\"");
+  EXPECT_EQ(ply_error("ply\nformat binary_big_endian 1.0\n"), "m.ply:2: unsupported format binary_big_endian");
+  EXPECT_EQ(ply_error("ply\nformat ascii 2.0\n"), "m.ply:2: expected the format's version 1.0, found \"2.0\"");
+  EXPECT_EQ(ply_error(ascii + "element vertex -1\n"),
             "m.ply:3: expected how many vertex records there are, found \"-1\"");
-  EXPECT_EQ(ply_error_of(ascii + "property float x\n"), "m.ply:3: expected element before the first property");
-  EXPECT_EQ(ply_error_of(ascii + "element vertex 1\nproperty half x\n"),
+  EXPECT_EQ(ply_error(ascii + "property float x\n"), "m.ply:3: expected element before the first property");
+  EXPECT_EQ(ply_error(ascii + "element vertex 1\nproperty half x\n"),
             "m.ply:4: expected a type (char, uchar, short, ushort, int, uint, float, double), found \"half\"");
-  EXPECT_EQ(ply_error_of(ascii + vertex3),
+  EXPECT_EQ(ply_error(ascii + vertex3),
             "m.ply:6: expected format, element, property, comment or end_header, found the end of the file");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + "end_header\n0 0 0\n1 x 0\n0 1 0\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + "end_header\n0 0 0\n1 x 0\n0 1 0\n"),
             "m.ply:9: expected a number of vertex 2 of 3, found \"x\"");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
             "m.ply:13: a face has the vertex index 3, but there are 3 vertices");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"),
             "m.ply:13: face 1 of 1 has a corner that is no index");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"),
             "m.ply:13: face 1 of 1 has fewer than 3 corners");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n7\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n7\n"),
             "m.ply:11: there is data after the last element");
-  EXPECT_EQ(ply_error_of(ascii + "element vertex 1\nproperty float x\nend_header\n0\n"),
+  EXPECT_EQ(ply_error(ascii + "element vertex 1\nproperty float x\nend_header\n0\n"),
             "m.ply:6: vertices have no x, y, z");
 }
 
 TEST(Ply, WhatIsDeclaredTwiceIsRefused) {
-  EXPECT_EQ(ply_error_of(ascii + "format ascii 1.0\n" + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n"),
+  EXPECT_EQ(ply_error(ascii + "format ascii 1.0\n" + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n"),
             "m.ply:3: the format is stated a second time");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 0\n1 0 0\n0 1 0\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + vertex3 + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 0\n1 0 0\n0 1 0\n"),
             "m.ply:7: there is a second element \"vertex\"");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + face1 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + face1 + face1 + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
             "m.ply:9: there is a second element \"face\"");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + face1 +
-                         "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + face1 +
+                      "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n"),
             "m.ply:9: there is a second list of indices");
-  EXPECT_EQ(ply_error_of(ascii + vertex3 + "property float x\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n"),
+  EXPECT_EQ(ply_error(ascii + vertex3 + "property float x\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n"),
             "m.ply:7: there is a second property \"x\" of vertex");
 }
 

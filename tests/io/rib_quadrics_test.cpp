@@ -15,8 +15,7 @@
 namespace tessera::test {
 namespace {
 
-constexpr double rib_quadrics_pi = std::numbers::pi;
-double radians(double degrees) { return degrees * rib_quadrics_pi / 180; }
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 /// A quadric's text, and its formula: the point at an angle theta and at v of the specification.
 struct Case {
@@ -37,8 +36,8 @@ std::string words(std::initializer_list<double> numbers) {
 }
 
 Case sphere(double r, double zmin, double zmax, double theta) {
-  const double from = zmin > -r ? std::asin(zmin / r) : -rib_quadrics_pi / 2,
-               to = zmax < r ? std::asin(zmax / r) : rib_quadrics_pi / 2;
+  const double from = zmin > -r ? std::asin(zmin / r) : -std::numbers::pi / 2,
+               to = zmax < r ? std::asin(zmax / r) : std::numbers::pi / 2;
   return {"Sphere" + words({r, zmin, zmax, theta}), theta, [=](double t, double v) {
             const double phi = from + v * (to - from);
             return Vec3{r * std::cos(t) * std::cos(phi), r * std::sin(t) * std::cos(phi), r * std::sin(phi)};
@@ -106,7 +105,7 @@ std::vector<Case> cases() {
 /// The angle at a parameter of a circle of four rational arcs over [0, 1].
 double arc_angle(double u) {
   const double arc = std::min(3.0, std::floor(4 * u)), s = 2 * (4 * u - arc) - 1;
-  return (arc + 0.5) * (rib_quadrics_pi / 2) + 2 * std::atan(std::tan(rib_quadrics_pi / 8) * s);
+  return (arc + 0.5) * (std::numbers::pi / 2) + 2 * std::atan(std::tan(std::numbers::pi / 8) * s);
 }
 
 /// The angle theta and the specification's v at parameters of a surface that was read.

@@ -16,26 +16,26 @@ Vec3 placed(const Model& model, std::size_t surface, const Vec3& point) {
   return model.surfaces.at(surface).placement->point(point);
 }
 
-void rib_scene_expect_near(const Vec3& a, const Vec3& b) {
+void expect_near_scene(const Vec3& a, const Vec3& b) {
   EXPECT_LE(length(a - b), 1e-14) << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
 TEST(RibScene, TheLastTransformationActsFirst) {
   const Model model = model_of(parse_rib, "Translate 10 0 0\nRotate 90 0 0 1\nScale 2 3 4\n" + quad);
   // Scaled, turned from x to y, moved.
-  rib_scene_expect_near(placed(model, 0, {1, 0, 0}), {10, 2, 0});
-  rib_scene_expect_near(placed(model, 0, {0, 1, 0}), {7, 0, 0});
-  rib_scene_expect_near(placed(model, 0, {0, 0, 1}), {10, 0, 4});
-  rib_scene_expect_near(evaluate_jet(model.surfaces[0], 1, 0)->position, {10, 2, 0});
+  expect_near_scene(placed(model, 0, {1, 0, 0}), {10, 2, 0});
+  expect_near_scene(placed(model, 0, {0, 1, 0}), {7, 0, 0});
+  expect_near_scene(placed(model, 0, {0, 0, 1}), {10, 0, 4});
+  expect_near_scene(evaluate_jet(model.surfaces[0], 1, 0)->position, {10, 2, 0});
 }
 
 TEST(RibScene, MatricesActOnRowVectors) {
   const Model model =
       model_of(parse_rib, "Translate [1 1 1] ConcatTransform [0 1 0 0  -1 0 0 0  0 0 1 0  5 6 7 1]\n" + quad +
                               "Transform [2 0 0 0  0 2 0 0  0 0 2 0  0 0 0 2]\n" + quad + "Identity\n" + quad);
-  rib_scene_expect_near(placed(model, 0, {1, 0, 0}), {6, 8, 8});  // (0,1,0) + (5,6,7), then moved
-  rib_scene_expect_near(placed(model, 0, {0, 1, 0}), {5, 7, 8});  // (-1,0,0)
-  EXPECT_EQ(model.surfaces[1].placement, Affine{});               // homogeneous: 2 over 2
+  expect_near_scene(placed(model, 0, {1, 0, 0}), {6, 8, 8});  // (0,1,0) + (5,6,7), then moved
+  expect_near_scene(placed(model, 0, {0, 1, 0}), {5, 7, 8});  // (-1,0,0)
+  EXPECT_EQ(model.surfaces[1].placement, Affine{});           // homogeneous: 2 over 2
   EXPECT_EQ(model.surfaces[2].placement, Affine{});
 }
 

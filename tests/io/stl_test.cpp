@@ -32,7 +32,7 @@ Mesh parsed(const std::string& bytes) {
   return mesh ? *mesh : Mesh{};
 }
 
-std::string stl_error_of(const std::string& bytes) {
+std::string stl_message(const std::string& bytes) {
   const Result<Mesh> mesh = parse_stl(bytes, "m.stl");
   EXPECT_FALSE(mesh.ok()) << bytes;
   return mesh.ok() ? "" : mesh.status().message();
@@ -155,21 +155,21 @@ TEST(Stl, TruncatedAtEveryByte) {
 }
 
 TEST(Stl, ErrorsNameThePlace) {
-  EXPECT_EQ(stl_error_of("solid s\nendsolid s\n"), "m.stl:2: there are no triangles");
-  EXPECT_EQ(stl_error_of("x"),
+  EXPECT_EQ(stl_message("solid s\nendsolid s\n"), "m.stl:2: there are no triangles");
+  EXPECT_EQ(stl_message("x"),
             "m.stl: the file does not begin with solid, and with 1 bytes it is too short for a binary STL file");
   std::string huge(84 + 50, 'x');
-  EXPECT_EQ(stl_error_of(huge),
+  EXPECT_EQ(stl_message(huge),
             "m.stl: the header states 2021161080 triangles; the file has room for 1 and 0 bytes more");
   huge.replace(80, 4, 4, '\0');
-  EXPECT_EQ(stl_error_of(huge), "m.stl: the header states 0 triangles; the file has room for 1 and 0 bytes more");
-  EXPECT_EQ(stl_error_of(huge.substr(0, 84)), "m.stl: there are no triangles");
-  EXPECT_EQ(stl_error_of("solid s\nfacet normal 0 0\n"),
+  EXPECT_EQ(stl_message(huge), "m.stl: the header states 0 triangles; the file has room for 1 and 0 bytes more");
+  EXPECT_EQ(stl_message(huge.substr(0, 84)), "m.stl: there are no triangles");
+  EXPECT_EQ(stl_message("solid s\nfacet normal 0 0\n"),
             "m.stl:2: expected 3 numbers after normal, found the end of the line");
-  EXPECT_EQ(stl_error_of("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
+  EXPECT_EQ(stl_message("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n"),
             "m.stl:6: expected 3 lines of vertex, found \"endloop\"");
-  EXPECT_EQ(stl_error_of("solid s\n" + one_facet), "m.stl:8: expected facet or endsolid, found the end of the file");
-  EXPECT_EQ(stl_error_of("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0,5\n"),
+  EXPECT_EQ(stl_message("solid s\n" + one_facet), "m.stl:8: expected facet or endsolid, found the end of the file");
+  EXPECT_EQ(stl_message("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0,5\n"),
             "m.stl:4: expected 3 numbers after vertex, found \"0,5\"");
 }
 

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 /// Windows that end within numbers, lines and surfaces; places after every surface, and after few.
 constexpr IndexOptions options_of_tests[] = {{1, 0}, {7, 100}, {64, 1}, {1000, 4000}, {1u << 22, 0}, {}};
 
-Model surface_file_part_of(const Model& model, std::size_t first, std::size_t end) {
+Model file_part_of(const Model& model, std::size_t first, std::size_t end) {
   Model part;
   part.surfaces.assign(model.surfaces.begin() + std::ptrdiff_t(first), model.surfaces.begin() + std::ptrdiff_t(end));
   return part;
@@ -48,7 +48,7 @@ void expect_runs_of(const SurfaceIndex& index, const Model& whole, const std::st
       EXPECT_EQ(run->warnings, whole.warnings) << what;
     }
     run->warnings.clear();
-    expect_same(surface_file_part_of(whole, first, end), *run,
+    expect_same(file_part_of(whole, first, end), *run,
                 what + ", " + std::to_string(first) + " to " + std::to_string(end));
   }
 }
@@ -278,7 +278,7 @@ TEST(SurfaceFile, ThreadsReadAtOnce) {
   for (std::thread& thread : threads) thread.join();
   for (std::size_t k = 0; k < runs.size(); ++k) {
     ASSERT_TRUE(runs[k].ok());
-    expect_same(surface_file_part_of(*whole, 500 * k, 500 * (k + 1)), *runs[k], "thread " + std::to_string(k));
+    expect_same(file_part_of(*whole, 500 * k, 500 * (k + 1)), *runs[k], "thread " + std::to_string(k));
   }
 }
 

@@ -96,7 +96,7 @@ Reading reading_of(const Result<Mesh>& mesh) {
 }
 
 template <auto Parse>
-Reading text_formats_parsed(std::string_view text, std::string_view name) {
+Reading parsed_as(std::string_view text, std::string_view name) {
   return reading_of(Parse(text, name));
 }
 template <auto Parse>
@@ -120,12 +120,12 @@ std::vector<std::string> TextFormat::samples() const {
 
 const std::vector<TextFormat>& text_formats() {
   static const std::vector<TextFormat> formats{
-      {"bpt", ".bpt", text_formats_parsed<parse_bpt>, opened_model},
-      {"bv", ".bv", text_formats_parsed<parse_bv>, opened_model},
-      {"g2", ".g2", text_formats_parsed<parse_g2>, opened_model},
-      {"json", ".json", text_formats_parsed<parse_json_model>, opened_model},
-      {"obj", ".obj", text_formats_parsed<parse_obj_freeform>, opened_model},
-      {"rib", ".rib", text_formats_parsed<parse_rib>, opened_model},
+      {"bpt", ".bpt", parsed_as<parse_bpt>, opened_model},
+      {"bv", ".bv", parsed_as<parse_bv>, opened_model},
+      {"g2", ".g2", parsed_as<parse_g2>, opened_model},
+      {"json", ".json", parsed_as<parse_json_model>, opened_model},
+      {"obj", ".obj", parsed_as<parse_obj_freeform>, opened_model},
+      {"rib", ".rib", parsed_as<parse_rib>, opened_model},
       {"obj_mesh", ".obj", parsed_faces<parse_obj>, opened_mesh},
       {"ply", ".ply", parsed_faces<parse_ply>, opened_mesh},
       {"gltf", ".gltf", parsed_faces<parse_gltf>, opened_mesh},

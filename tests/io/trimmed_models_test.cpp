@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <numbers>
 #include <set>
 
 #include "support/random_patches.h"
@@ -16,7 +17,7 @@
 namespace tessera::test {
 namespace {
 
-const std::filesystem::path trimmed_models_folder = TESSERA_SOURCE_DIR "/tools/models";
+const std::filesystem::path models_folder = TESSERA_SOURCE_DIR "/tools/models";
 
 /// A function of a point of a surface that is positive where the point is kept: about its distance from the border.
 using Kept = std::function<double(const Vec3& point, double u, double v)>;
@@ -53,16 +54,14 @@ double in_sieve(const Vec3&, double u, double v) {
   return nearest;
 }
 
-const double trimmed_models_pi = std::acos(-1.0);
-
 std::vector<TrimmedModel> trimmed_models() {
   const TrimOptions none{}, around{.periodic_u = true}, both{.periodic_u = true, .periodic_v = true};
   const Kept octant = [](const Vec3& p, double, double) { return std::min({p.x, p.y, p.z}); };
   const Kept cut = [](const Vec3& p, double, double) { return 2 + p.x - p.z; };
   return {
-      {"trimmed_plate", 0, none, 1e-14, 1 - (4 * 0.5625 + 4) * trimmed_models_pi / 96, {}, in_plate},
-      {"trimmed_rings", 0, none, 1e-14, trimmed_models_pi * (16 - 9 + 4 - 1) / 100, {}, in_target},
-      {"trimmed_hundred_holes", 0, none, 1e-15, 1 - 100 * trimmed_models_pi * 16e-6, {}, in_sieve},
+      {"trimmed_plate", 0, none, 1e-14, 1 - (4 * 0.5625 + 4) * std::numbers::pi / 96, {}, in_plate},
+      {"trimmed_rings", 0, none, 1e-14, std::numbers::pi * (16 - 9 + 4 - 1) / 100, {}, in_target},
+      {"trimmed_hundred_holes", 0, none, 1e-15, 1 - 100 * std::numbers::pi * 16e-6, {}, in_sieve},
       {"trimmed_slit",
        0,
        none,
@@ -74,7 +73,7 @@ std::vector<TrimmedModel> trimmed_models() {
        0,
        none,
        1e-15,
-       1 - trimmed_models_pi * (1.0 / 16 + 1.0 / 64),
+       1 - std::numbers::pi * (1.0 / 16 + 1.0 / 64),
        {},
        [](const Vec3&, double u, double v) {
          return std::min(beyond(u - 0.25, v - 0.5, 0.25), beyond(u - 0.75, v - 0.375, 0.125));
@@ -83,7 +82,7 @@ std::vector<TrimmedModel> trimmed_models() {
        0,
        both,
        1e-15,
-       1 - trimmed_models_pi / 64,
+       1 - std::numbers::pi / 64,
        {},
        [](const Vec3&, double u, double v) { return beyond(std::min(u, 1 - u), std::min(v, 1 - v), 0.125); }},
       {"trimmed_octant", 0, none, 1e-14, 0.125, {}, octant},
@@ -117,7 +116,7 @@ std::vector<TrimmedModel> trimmed_models() {
 TEST(TrimmedModels, KeepWhatTheirFormulasSay) {
   Random random(1);
   for (const TrimmedModel& model : trimmed_models()) {
-    const Model read = value_of(read_model(trimmed_models_folder / (model.name + ".json")));
+    const Model read = value_of(read_model(models_folder / (model.name + ".json")));
     EXPECT_TRUE(read.warnings.empty()) << model.name;
     const ModelSurface& surface = read.surfaces.at(model.surface);
     const PatchGrid grid = value_of(to_bezier(surface));
@@ -144,10 +143,10 @@ TEST(TrimmedModels, KeepWhatTheirFormulasSay) {
 TEST(TrimmedModels, AreAllInTheTable) {
   std::set<std::string> listed, found;
   for (const TrimmedModel& model : trimmed_models()) listed.insert(model.name);
-  for (const auto& entry : std::filesystem::directory_iterator(trimmed_models_folder))
+  for (const auto& entry : std::filesystem::directory_iterator(models_folder))
     if (const std::string name = entry.path().stem(); name.starts_with("trimmed_")) found.insert(name);
   EXPECT_EQ(listed, found);
-  for (const auto& entry : std::filesystem::directory_iterator(trimmed_models_folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(models_folder)) {
     if (entry.path().extension() != ".json" || entry.path().stem().string().starts_with("trimmed_")) continue;
     for (const ModelSurface& surface : value_of(read_model(entry.path())).surfaces)
       EXPECT_TRUE(surface.trims->empty()) << entry.path() << " is trimmed: its name begins with trimmed_";
@@ -156,7 +155,7 @@ TEST(TrimmedModels, AreAllInTheTable) {
 
 /// The curves of the crossing cylinders are cubics; the part that they miss is within the table's precision.
 TEST(TrimmedModels, CrossingCylindersMeet) {
-  const Model model = value_of(read_model(trimmed_models_folder / "trimmed_crossing_cylinders.json"));
+  const Model model = value_of(read_model(models_folder / "trimmed_crossing_cylinders.json"));
   ASSERT_EQ(model.surfaces.size(), 2u);
   double wide = 0, narrow = 0;
   const auto visit = [&](const ModelSurface& surface, std::size_t curve, double& farthest) {

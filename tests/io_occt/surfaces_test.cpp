@@ -40,8 +40,6 @@ namespace tessera::test {
 namespace {
 
 using opencascade::handle;
-constexpr double surfaces_pi = std::numbers::pi;
-
 /// The largest distance at `count` random parameters, by the size of the points.
 double distance(const handle<Geom_Surface>& surface, const FaceSurface& ours, const Domain& box, int count) {
   std::mt19937_64 random(7);
@@ -77,10 +75,11 @@ gp_Ax3 left_handed() {
 
 TEST(FaceSurface, AnalyticSurfacesAreExact) {
   for (const gp_Ax3& axes : {tilted, left_handed()}) {
-    expect_exact(new Geom_SphericalSurface(axes, 2), {0, 2 * surfaces_pi, -surfaces_pi / 2, surfaces_pi / 2});
+    expect_exact(new Geom_SphericalSurface(axes, 2),
+                 {0, 2 * std::numbers::pi, -std::numbers::pi / 2, std::numbers::pi / 2});
     expect_exact(new Geom_SphericalSurface(axes, 2), {-1, 0.3, 0.1, 1.2});
-    expect_exact(new Geom_ToroidalSurface(axes, 5, 2), {1, 1 + 2 * surfaces_pi, -3, 3});
-    expect_exact(new Geom_ToroidalSurface(axes, 5, 2), {6, 7, 0, 2 * surfaces_pi});
+    expect_exact(new Geom_ToroidalSurface(axes, 5, 2), {1, 1 + 2 * std::numbers::pi, -3, 3});
+    expect_exact(new Geom_ToroidalSurface(axes, 5, 2), {6, 7, 0, 2 * std::numbers::pi});
   }
   const gp_Ax2 axes = tilted.Ax2();
   for (const TopoDS_Shape& solid :
@@ -95,8 +94,8 @@ TEST(FaceSurface, AnalyticSurfacesAreExact) {
 }
 
 TEST(FaceSurface, PolesAndApexesAreCollapsed) {
-  const Result<FaceSurface> sphere =
-      face_surface(new Geom_SphericalSurface(tilted, 2), {0, 2 * surfaces_pi, -surfaces_pi / 2, surfaces_pi / 2});
+  const Result<FaceSurface> sphere = face_surface(
+      new Geom_SphericalSurface(tilted, 2), {0, 2 * std::numbers::pi, -std::numbers::pi / 2, std::numbers::pi / 2});
   ASSERT_TRUE(sphere.ok());
   const BSplineSurface& s = sphere->surface;
   for (std::size_t i = 0; i < s.count_u(); ++i) {
@@ -144,7 +143,7 @@ TEST(FaceSurface, SweptSurfacesAreExact) {
   expect_exact(new Geom_SurfaceOfLinearExtrusion(new Geom_Ellipse(axes, 3, 1), gp_Dir(1, 1, 5)), {2, 6, 0, 1});
   expect_exact(new Geom_SurfaceOfLinearExtrusion(new Geom_Parabola(axes, 0.7), gp_Dir(1, 1, 5)), {-2, 3, 0, 1});
   expect_exact(new Geom_SurfaceOfRevolution(new Geom_Ellipse(axes, 3, 1), gp_Ax1(gp_Pnt(9, 9, 9), gp_Dir(0, 1, 1))),
-               {0, 2 * surfaces_pi, 0, 2 * surfaces_pi});
+               {0, 2 * std::numbers::pi, 0, 2 * std::numbers::pi});
 }
 
 /// A torus of poles, periodic both ways.
@@ -152,7 +151,7 @@ handle<Geom_BSplineSurface> periodic_surface(int count_u, int count_v, int degre
   TColgp_Array2OfPnt poles(1, count_u, 1, count_v);
   for (int i = 1; i <= count_u; ++i)
     for (int j = 1; j <= count_v; ++j) {
-      const double a = 2 * surfaces_pi * i / count_u, b = 2 * surfaces_pi * j / count_v;
+      const double a = 2 * std::numbers::pi * i / count_u, b = 2 * std::numbers::pi * j / count_v;
       poles(i, j) = gp_Pnt((4 + std::cos(b)) * std::cos(a), (4 + std::cos(b)) * std::sin(a), std::sin(b) + 0.1 * i);
     }
   const auto knots = [](int count) {

@@ -13,7 +13,7 @@ namespace tessera::render {
 namespace {
 
 /// The square [0,1]^2 of two triangles that share no vertices, with the diagonal from (0,0) to (1,1).
-Mesh square() {
+Mesh square_face() {
   Mesh mesh;
   mesh.origin = {3, 4, 5};
   mesh.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
@@ -42,7 +42,7 @@ std::multiset<Line> lines_of(const Mesh& borders) {
 const std::multiset<Line> sides{{0, 0, 1, 0}, {1, 0, 1, 1}, {0, 1, 1, 1}, {0, 0, 0, 1}};
 
 TEST(FaceBorders, AreTheSidesOfAFace) {
-  const Mesh borders = face_borders(square(), std::vector<std::uint32_t>{7, 7});
+  const Mesh borders = face_borders(square_face(), std::vector<std::uint32_t>{7, 7});
   EXPECT_EQ(borders.origin, (Vec3{3, 4, 5}));
   EXPECT_EQ(lines_of(borders), sides);
 }
@@ -50,11 +50,11 @@ TEST(FaceBorders, AreTheSidesOfAFace) {
 TEST(FaceBorders, LieWhereTwoFacesMeet) {
   std::multiset<Line> expected = sides;
   for (int k = 0; k < 2; ++k) expected.insert(Line{0, 0, 1, 1});
-  EXPECT_EQ(lines_of(face_borders(square(), std::vector<std::uint32_t>{7, 2})), expected);
+  EXPECT_EQ(lines_of(face_borders(square_face(), std::vector<std::uint32_t>{7, 2})), expected);
 }
 
 TEST(FaceBorders, IgnoreTrianglesWithoutArea) {
-  Mesh mesh = square();
+  Mesh mesh = square_face();
   mesh.indices.insert(mesh.indices.end(), {0, 3, 4});  // two corners in one place, on the diagonal
   EXPECT_EQ(lines_of(face_borders(mesh, std::vector<std::uint32_t>{7, 7, 7})), sides);
 }

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "base/infinity.h"
 #include "tessera/status.h"
 
 namespace tessera::test {
 
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The rows of one header, or of one command.

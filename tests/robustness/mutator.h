@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/infinity.h"
 #include "support/random_patches.h"
 #include "tessera/geometry.h"
 
@@ -51,11 +52,10 @@ class Mutator {
 
  private:
   double mutated(double value) {
-    constexpr double endless = std::numeric_limits<double>::infinity();
     static constexpr std::array others{
-        0.0,   -0.0,  1.0,    -1.0,   5e-324,  -5e-324,  2e-308,  1e-45,
-        1e-30, 1e30,  1e38,   4e38,   1e300,   -1e300,   endless, -endless,
-        1e16,  -1e16, 1e-100, 1e-101, 1.7e308, -1.7e308, 1e-9,    std::numeric_limits<double>::quiet_NaN()};
+        0.0,   -0.0,  1.0,    -1.0,   5e-324,  -5e-324,  2e-308,   1e-45,
+        1e-30, 1e30,  1e38,   4e38,   1e300,   -1e300,   infinity, -infinity,
+        1e16,  -1e16, 1e-100, 1e-101, 1.7e308, -1.7e308, 1e-9,     std::numeric_limits<double>::quiet_NaN()};
     switch (below(4)) {
       case 0:
         return others[below(others.size())];

@@ -13,8 +13,6 @@ namespace {
 
 constexpr double quadric_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double quadric_infinity = std::numeric_limits<double>::infinity();
-constexpr double quadric_pi = std::numbers::pi;
-
 QuadricCoefficients times(double s, const QuadricCoefficients& q) {
   return {s * q.a, s * q.b, s * q.c, s * q.d, s * q.e, s * q.f, s * q.g, s * q.h, s * q.j, s * q.k};
 }
@@ -182,9 +180,10 @@ TEST(QuadricPiece, ParametersOfAnySize) {
 
 TEST(QuadricPiece, LocateKnowsThePieceFromTheRest) {
   const Quadric sphere = quadric({.a = 1, .b = 1, .c = 1, .k = -1});
-  const QuadricPiece part = piece(sphere, {3 * quadric_pi / 2, 5 * quadric_pi / 2, 0, quadric_pi / 2});
+  const QuadricPiece part =
+      piece(sphere, {3 * std::numbers::pi / 2, 5 * std::numbers::pi / 2, 0, std::numbers::pi / 2});
   EXPECT_TRUE(part.locate({1, 0, 0}).has_value());
-  EXPECT_NEAR(part.locate({1, 0, 0})->u, 2 * quadric_pi, 1e-12);
+  EXPECT_NEAR(part.locate({1, 0, 0})->u, 2 * std::numbers::pi, 1e-12);
   EXPECT_TRUE(part.locate({0, 0, 1}).has_value());
   EXPECT_FALSE(part.locate({-1, 0, 0}).has_value());
   EXPECT_FALSE(part.locate({0.6, 0, -0.8}).has_value());
@@ -203,7 +202,7 @@ TEST(QuadricPiece, RefusesBadRanges) {
   EXPECT_EQ(code(sphere, {200, 201, 0, 1}), StatusCode::invalid_argument);
   EXPECT_EQ(code(sphere, {quadric_nan, 1, 0, 1}), StatusCode::non_finite);
   EXPECT_EQ(code(sphere, {0, 1, 0, quadric_infinity}), StatusCode::non_finite);
-  EXPECT_EQ(code(sphere, {0, 2 * quadric_pi, -quadric_pi / 2, quadric_pi / 2}), StatusCode::ok);
+  EXPECT_EQ(code(sphere, {0, 2 * std::numbers::pi, -std::numbers::pi / 2, std::numbers::pi / 2}), StatusCode::ok);
   EXPECT_EQ(code(sphere, {0, 1, 0, 1}, 1), StatusCode::invalid_argument);
   EXPECT_EQ(code(sphere, {0, 1, 0, 1}, -1), StatusCode::invalid_argument);
   EXPECT_EQ(code(quadric({.a = 1, .b = 1, .c = -1, .k = -1}), {0, 1, 0, 301}), StatusCode::invalid_argument);

@@ -3,6 +3,7 @@
 #include "tessera/coons_patch.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "support/borders.h"
@@ -12,8 +13,6 @@
 namespace tessera::test {
 namespace {
 
-const double ruled_surface_pi = std::acos(-1.0);
-
 RuledSurface ruled(const BorderCurve& first, const BorderCurve& second, const Interval& across = {},
                    Direction straight = Direction::v) {
   return value_of(RuledSurface::make(first, second, across, straight));
@@ -22,7 +21,7 @@ RuledSurface ruled(const BorderCurve& first, const BorderCurve& second, const In
 TEST(RuledFigures, BetweenCallables) {
   const RuledSurface quarter =
       ruled(callable([](double u) {
-              return Vec3{u, std::sin(ruled_surface_pi * u / 2), std::cos(ruled_surface_pi * u / 2)};
+              return Vec3{u, std::sin(std::numbers::pi * u / 2), std::cos(std::numbers::pi * u / 2)};
             }),
             callable([](double u) {
               return Vec3{u, u * u, -u / 2};
@@ -35,7 +34,7 @@ TEST(RuledFigures, BetweenCallables) {
                                     return Vec3{u, 0, 4 * u * (1 - u)};
                                   }),
                                   callable([](double u) {
-                                    return Vec3{u, 1, std::sin(2 * ruled_surface_pi * u)};
+                                    return Vec3{u, 1, std::sin(2 * std::numbers::pi * u)};
                                   }));
   EXPECT_TRUE(within_units(value_of(position(wave, 0.25, 0.75)), {0.25, 0.75, 0.9375}, double_unit, 1));
 }

@@ -120,7 +120,7 @@ TEST(FollowedMesh, WeldedNeighboursFollow) {
 
 /// The largest distance from any patch to its part of the mesh, over its bound. `apart`: a mesh of the same triangles
 /// whose vertices have the parameters of their own patch.
-double followed_mesh_found_over_bound(const Animated& body, const Mesh& apart) {
+double followed_over_bound(const Animated& body, const Mesh& apart) {
   double most = 0;
   for (std::size_t t = 0; t < body.mesh.triangle_count(); ++t) {
     MeshTriangle triangle;
@@ -144,7 +144,7 @@ TEST(FollowedMesh, NewBoundsHold) {
     Animated body(patches, {.tolerance = 0.02, .weld = 1e-4});
     for (const double by : {0.001, -0.5, 0.3, 3.0}) {
       changed += body.run(moved(body.set, 2, [by](const Vec3& p) { return Vec3{p.x, p.y, p.z * (1 + by)}; })).topology;
-      EXPECT_LE(followed_mesh_found_over_bound(body, body.mesh), 1);
+      EXPECT_LE(followed_over_bound(body, body.mesh), 1);
       EXPECT_EQ(body.plan.bound(), double(*std::ranges::max_element(body.plan.bounds())));
       EXPECT_LE(body.plan.bound(), 0.02 * (1 + 1e-6));
     }
@@ -167,7 +167,7 @@ TEST(FollowedMesh, SharedVerticesPartWithTheirBorders) {
   ASSERT_GT(room, 1e-5);
   EXPECT_FALSE(body.run(lifted(0.9 * room)).topology);
   EXPECT_GE(double(body.plan.bounds()[4]), 0.9 * room);
-  EXPECT_LE(followed_mesh_found_over_bound(body, apart), 1);
+  EXPECT_LE(followed_over_bound(body, apart), 1);
   const std::size_t together = body.mesh.vertex_count();
   EXPECT_TRUE(body.run(lifted(0.3)).topology);
   EXPECT_GT(body.mesh.vertex_count(), together);

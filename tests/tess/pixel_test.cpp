@@ -69,8 +69,8 @@ struct PixelFound {
   std::size_t seen = 0;  ///< points in the frame
 };
 
-PixelFound pixel_found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, const View& view,
-                                  Random& random) {
+PixelFound pixels_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, const View& view,
+                             Random& random) {
   const Pinhole camera(view);
   PixelFound found;
   const std::size_t step = std::max<std::size_t>(mesh.triangle_count() / 1500, 1);
@@ -143,7 +143,7 @@ TEST(Pixels, AreNeverExceeded) {
       }
       EXPECT_LE(plan->pixels(), 2 * (1 + 1e-6));
       if (plan->capacity().triangles > 300'000) continue;
-      const PixelFound found = pixel_found_over_bound(set, *plan, mesh_of(set, *plan), view, random);
+      const PixelFound found = pixels_over_bound(set, *plan, mesh_of(set, *plan), view, random);
       EXPECT_LE(found.share, 1) << chosen.name << (view.orthographic ? ", orthographic" : "");
       most = std::max(most, found.share);
     }
@@ -228,7 +228,7 @@ TEST(Pixels, AFloorBelowTheEye) {
   EXPECT_LE(plan.pixels(), 0.5 * (1 + 1e-6));
   EXPECT_LT(plan.capacity().triangles, 200'000u);
   Random random(2);
-  const PixelFound found = pixel_found_over_bound(set, plan, mesh_of(set, plan), view, random);
+  const PixelFound found = pixels_over_bound(set, plan, mesh_of(set, plan), view, random);
   EXPECT_GT(found.seen, 100u);
   EXPECT_LE(found.share, 1);
 }

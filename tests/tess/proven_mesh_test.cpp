@@ -25,7 +25,7 @@ Vec3 proven_mesh_vertex(const Mesh& mesh, std::size_t k) {
 }
 
 /// The largest distance found, over the patch's bound: of `samples` points of the patch over each triangle.
-double proven_mesh_found_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, int samples) {
+double proven_over_bound(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, int samples) {
   Random random(11);
   double most = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -73,7 +73,7 @@ TEST(ProvenMesh, ClosedBodiesStayClosedAtEveryTolerance) {
         EXPECT_EQ(report.degenerate_triangles, 0u) << relative;
         EXPECT_EQ(report.non_finite_vertices, 0u);
         EXPECT_EQ(2 * report.distinct_positions, report.triangles + 4);
-        if (relative >= 1e-3) largest = std::max(largest, proven_mesh_found_over_bound(set, plan, mesh, 8));
+        if (relative >= 1e-3) largest = std::max(largest, proven_over_bound(set, plan, mesh, 8));
       }
       EXPECT_LE(largest, 1);
       EXPECT_GE(largest, 0.2);
@@ -97,7 +97,7 @@ TEST(ProvenMesh, RatesThatDifferMeetWithoutACrack) {
     EXPECT_EQ(report.inconsistent_edges > 0, true);  // the patches are turned
     // A disc: vertices - edges + triangles = 1, and 3 triangles = 2 edges - open edges.
     EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2) << tolerance;
-    EXPECT_LE(proven_mesh_found_over_bound(set, plan, mesh, 6), 1);
+    EXPECT_LE(proven_over_bound(set, plan, mesh, 6), 1);
   }
 }
 
@@ -108,7 +108,7 @@ TEST(ProvenMesh, RandomSetsKeepTheirBounds) {
       const Tessellation plan = proven_mesh_plan_of(set, tolerance);
       const Mesh mesh = mesh_of(set, plan);
       EXPECT_EQ(good(check(mesh)).degenerate_triangles, 0u);
-      EXPECT_LE(proven_mesh_found_over_bound(set, plan, mesh, 5), 1);
+      EXPECT_LE(proven_over_bound(set, plan, mesh, 5), 1);
     }
   }
 }

@@ -14,8 +14,6 @@
 namespace tessera::test {
 namespace {
 
-constexpr double piece_chords_pi = std::numbers::pi;
-
 /// The arc of the unit circle from one angle to another, as a rational parabola.
 TrimPiece arc(double from, double to) {
   const double middle = (from + to) / 2, weight = std::cos((to - from) / 2);
@@ -42,29 +40,29 @@ Chords chords_of(const std::vector<TrimPiece>& pieces, double most, const std::a
 }
 
 TEST(PieceChords, OfAnArcAreAsFewAsItsSagittasAllow) {
-  const auto sagitta = [](int count) { return 1 - std::cos(piece_chords_pi / 4 / count); };
+  const auto sagitta = [](int count) { return 1 - std::cos(std::numbers::pi / 4 / count); };
   for (const int count : {1, 2, 4, 8, 16}) {
-    const Chords fine = chords_of({arc(0, piece_chords_pi / 2)}, sagitta(count) * (1 + 1e-9));
+    const Chords fine = chords_of({arc(0, std::numbers::pi / 2)}, sagitta(count) * (1 + 1e-9));
     EXPECT_EQ(fine.points.size(), static_cast<std::size_t>(count));
     EXPECT_NEAR(fine.sliver, sagitta(count), 1e-12);
   }
   // Even parts of a parabola's parameter are uneven parts of the arc, by up to 6% of their sagittas.
   for (int count = 1; count <= 16; ++count)
-    EXPECT_EQ(chords_of({arc(0, piece_chords_pi / 2)}, 1.06 * sagitta(count)).points.size(),
+    EXPECT_EQ(chords_of({arc(0, std::numbers::pi / 2)}, 1.06 * sagitta(count)).points.size(),
               static_cast<std::size_t>(count));
 }
 
 TEST(PieceChords, AreNotHalvedOnceTheCallIsCancelled) {
   std::atomic<bool> cancel = false;
-  EXPECT_GT(chords_of({arc(0, piece_chords_pi / 2)}, 1e-9, &cancel).points.size(), 1000u);
+  EXPECT_GT(chords_of({arc(0, std::numbers::pi / 2)}, 1e-9, &cancel).points.size(), 1000u);
   cancel = true;
-  EXPECT_EQ(chords_of({arc(0, piece_chords_pi / 2)}, 1e-9, &cancel).points.size(), 1u);
+  EXPECT_EQ(chords_of({arc(0, std::numbers::pi / 2)}, 1e-9, &cancel).points.size(), 1u);
 }
 
 TEST(PieceChords, SpanPiecesThatTurnBackALittle) {
   const auto around_top = [](double angle) {
-    return std::vector{arc(piece_chords_pi / 2 - angle, piece_chords_pi / 2),
-                       arc(piece_chords_pi / 2, piece_chords_pi / 2 + angle)};
+    return std::vector{arc(std::numbers::pi / 2 - angle, std::numbers::pi / 2),
+                       arc(std::numbers::pi / 2, std::numbers::pi / 2 + angle)};
   };
   EXPECT_EQ(chords_of(around_top(0.2), 0.1).points.size(), 1u);
   EXPECT_GE(chords_of(around_top(0.2), 0.1).sliver, 1 - std::cos(0.2));

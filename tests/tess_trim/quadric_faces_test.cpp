@@ -11,8 +11,6 @@
 namespace tessera::test {
 namespace {
 
-constexpr double quadric_faces_pi = std::numbers::pi;
-
 ModelSurface trimmed(const QuadricPiece& part, std::vector<TrimLoop> loops) {
   return {.name = std::string("face"), .surface = part, .trims = std::move(loops)};
 }
@@ -60,25 +58,25 @@ TEST(QuadricFaces, KeepTheirCanonicalParametersOnEveryKind) {
 }
 
 TEST(QuadricFaces, CrossTheSeam) {
-  const QuadricPiece part = piece(quadric({.a = 1, .b = 1, .k = -1}), {0, 2 * quadric_faces_pi, -1, 2});
+  const QuadricPiece part = piece(quadric({.a = 1, .b = 1, .k = -1}), {0, 2 * std::numbers::pi, -1, 2});
   const auto beyond = [](double u, double v) {
-    return std::hypot(std::remainder(u + 0.2, 2 * quadric_faces_pi), v - 0.4) - 0.9;
+    return std::hypot(std::remainder(u + 0.2, 2 * std::numbers::pi), v - 0.4) - 0.9;
   };
   for (const double turns : {-1.0, 0.0, 1.0, 2.0})
-    expect_sides(trimmed(part, {circle({2 * quadric_faces_pi * turns - 0.2, 0.4}, 0.9, true)}), beyond);
+    expect_sides(trimmed(part, {circle({2 * std::numbers::pi * turns - 0.2, 0.4}, 0.9, true)}), beyond);
 }
 
 TEST(QuadricFaces, KeepLinesAlongAParameterStraight) {
   const QuadricPiece part = piece(quadric({.a = 1, .b = 1, .c = 1, .k = -1}),
-                                  {0, 2 * quadric_faces_pi, -quadric_faces_pi / 2, quadric_faces_pi / 2});
-  const ModelSurface face = trimmed(part, {rectangle(0.3, quadric_faces_pi / 2, -0.4, quadric_faces_pi / 2, true)});
+                                  {0, 2 * std::numbers::pi, -std::numbers::pi / 2, std::numbers::pi / 2});
+  const ModelSurface face = trimmed(part, {rectangle(0.3, std::numbers::pi / 2, -0.4, std::numbers::pi / 2, true)});
   const Shared<std::vector<TrimLoop>> loops = value_of(grid_trims(face));
   for (const Curve& curve : loops->at(0).curves) {
     EXPECT_EQ(curve.degree(), 1);
     for (const Vec3& p : curve.points()) {
       const auto own = own_parameters(face.surface, p.x, p.y);
-      EXPECT_LE(std::min(std::abs(own[0] - 0.3), std::abs(own[0] - quadric_faces_pi / 2)), 1e-15);
-      EXPECT_LE(std::min(std::abs(own[1] + 0.4), std::abs(own[1] - quadric_faces_pi / 2)), 1e-15);
+      EXPECT_LE(std::min(std::abs(own[0] - 0.3), std::abs(own[0] - std::numbers::pi / 2)), 1e-15);
+      EXPECT_LE(std::min(std::abs(own[1] + 0.4), std::abs(own[1] - std::numbers::pi / 2)), 1e-15);
     }
   }
   EXPECT_TRUE(loops->at(0).hole);
@@ -87,9 +85,9 @@ TEST(QuadricFaces, KeepLinesAlongAParameterStraight) {
 }
 
 TEST(QuadricFaces, SayWhichLoopIsTooLong) {
-  const QuadricPiece part = piece(quadric({.a = 1, .b = 1, .k = -1}), {0, 2 * quadric_faces_pi, 0, 1});
+  const QuadricPiece part = piece(quadric({.a = 1, .b = 1, .k = -1}), {0, 2 * std::numbers::pi, 0, 1});
   const ModelSurface face =
-      trimmed(part, {circle({1, 0.5}, 0.1), polygon({{0, 0}, {65 * 2 * quadric_faces_pi, 0}, {1, 1}})});
+      trimmed(part, {circle({1, 0.5}, 0.1), polygon({{0, 0}, {65 * 2 * std::numbers::pi, 0}, {1, 1}})});
   const Status status = grid_trims(face).status();
   EXPECT_EQ(status.code(), StatusCode::unsupported);
   EXPECT_EQ(status.index(), 1);
@@ -123,19 +121,19 @@ double meshed_area(const ModelSurface& face, double tolerance) {
 TEST(QuadricFaces, HaveTheAreaOfTheirFormulas) {
   constexpr double tolerance = 1e-5, slack = 40 * tolerance;
   const QuadricPiece ball = piece(quadric({.a = 1, .b = 1, .c = 1, .k = -1}),
-                                  {0, 2 * quadric_faces_pi, -quadric_faces_pi / 2, quadric_faces_pi / 2});
+                                  {0, 2 * std::numbers::pi, -std::numbers::pi / 2, std::numbers::pi / 2});
   const double window = 0.8 * (std::sin(0.9) - std::sin(-0.35));
   EXPECT_NEAR(meshed_area(trimmed(ball, {rectangle(0.4, 1.2, -0.35, 0.9)}), tolerance), window, slack);
   EXPECT_NEAR(meshed_area(trimmed(ball, {rectangle(0.4, 1.2, -0.35, 0.9, true)}), tolerance),
-              4 * quadric_faces_pi - window, slack);
-  const QuadricPiece pipe = piece(quadric({.a = 1, .b = 1, .k = -1}), {0, 2 * quadric_faces_pi, -1, 1});
-  EXPECT_NEAR(meshed_area(trimmed(pipe, {circle({0.4, 0.1}, 0.7)}), tolerance), quadric_faces_pi * 0.49, slack);
+              4 * std::numbers::pi - window, slack);
+  const QuadricPiece pipe = piece(quadric({.a = 1, .b = 1, .k = -1}), {0, 2 * std::numbers::pi, -1, 1});
+  EXPECT_NEAR(meshed_area(trimmed(pipe, {circle({0.4, 0.1}, 0.7)}), tolerance), std::numbers::pi * 0.49, slack);
   EXPECT_NEAR(meshed_area(trimmed(pipe, {circle({0, 0.1}, 0.7, true)}), tolerance),
-              4 * quadric_faces_pi - quadric_faces_pi * 0.49, slack);
+              4 * std::numbers::pi - std::numbers::pi * 0.49, slack);
   // A cone's area is the integral of sqrt(2) v; the ellipse's moment is that of its centre.
-  const QuadricPiece cone = piece(quadric({.a = 1, .b = 1, .c = -1}), {0, 2 * quadric_faces_pi, 0, 2});
+  const QuadricPiece cone = piece(quadric({.a = 1, .b = 1, .c = -1}), {0, 2 * std::numbers::pi, 0, 2});
   EXPECT_NEAR(meshed_area(trimmed(cone, {ellipse({1, 1.1}, 0.9, 0.4)}), tolerance),
-              std::sqrt(2) * 1.1 * quadric_faces_pi * 0.9 * 0.4, slack);
+              std::sqrt(2) * 1.1 * std::numbers::pi * 0.9 * 0.4, slack);
 }
 
 }  // namespace
