@@ -14,8 +14,7 @@
 #include "roofline/roofline.h"
 #include "suite.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr const char* usage =
     R"(tessera_bench [--set=quick|full] [options of Google Benchmark]
@@ -101,8 +100,7 @@ int run(int count, char** words) {
   return good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int count, char** words) {
   try {

@@ -16,6 +16,7 @@
 #   assimp            libassimp-dev 5.2           tests: another reader of glTF; skipped without
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
 #   valgrind          valgrind 3.19               tests: instructions counted (tools/perf count), skipped without
+#   Universal Ctags   universal-ctags 5.9        tests: names that editors find; skipped without
 #   Python            python3 3.11                tools/perf and its tests, its standard library alone; skipped without
 #   PyYAML            python3-yaml 6.0            the test of the recipe in tools/performance/template; skipped without
 #   librsvg           librsvg2-bin 2.54           tools/perf report: plots as PNG; left out without

@@ -73,5 +73,6 @@ with open(sys.argv[1], encoding='utf-8') as file:
 if sys.argv[1].endswith('.md'):
     print(without_outer_links(content), end='')
 else:
-    content = re.sub(r'::inline \w+ \{', ' {', content)
+    content = re.sub(r' inline namespace \w+ \{', '', content)
+    content = re.sub(r'\}\}(  // namespace tessera)::\w+\n', r'}\1\n', content)
     print('\n'.join(shown(with_file_comment(content.split('\n')))), end='')

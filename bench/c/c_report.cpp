@@ -16,8 +16,7 @@
 #include "tessera/tessellation.h"
 #include "tessera/tessera_c.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int rounds = 15;
 
@@ -181,8 +180,7 @@ void time_rays(const Sets& sets, std::size_t count, float side) {
   check(tsr_release(of));
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char**) {
   if (argc > 1) {

@@ -18,8 +18,7 @@
 #include "tessera/parametric_surface.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::value_of;
 
@@ -150,5 +149,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

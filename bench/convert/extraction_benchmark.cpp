@@ -11,8 +11,7 @@
 #include "tessera/convert.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int spans = 200;
 
@@ -49,5 +48,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

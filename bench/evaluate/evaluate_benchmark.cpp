@@ -18,8 +18,7 @@
 #include "tessera/evaluate.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 enum class Layout { blocks, interleaved };
 
@@ -281,5 +280,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -19,8 +19,7 @@
 #include "tessera/evaluate.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 struct Case {
   std::size_t patches;
@@ -133,5 +132,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -12,8 +12,7 @@
 #include "tessera/evaluate.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr std::size_t size = 9;
 /// Calls that are timed together: one is shorter than the clock's steps allow.
@@ -83,5 +82,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -19,8 +19,7 @@
 #include "tessera/parametric_surface.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::value_of;
 
@@ -155,5 +154,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -13,8 +13,7 @@
 #include "tessera/evaluate.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int rows = 100, columns = 100, size = 9;
 
@@ -135,5 +134,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

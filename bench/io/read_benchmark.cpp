@@ -16,8 +16,7 @@
 #include "tessera/io.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 struct Text {
   std::string bytes;
@@ -209,5 +208,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

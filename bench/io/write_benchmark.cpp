@@ -20,8 +20,7 @@
 #include "tessera/io.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 namespace fs = std::filesystem;
 
@@ -138,5 +137,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

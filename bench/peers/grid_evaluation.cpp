@@ -11,8 +11,7 @@
 #include "peers/interleaved.h"
 #include "peers/results.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 struct Package {
   const char *peer, *name;
@@ -128,8 +127,7 @@ int run() {
   return 0;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main() {
   try {

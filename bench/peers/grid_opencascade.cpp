@@ -12,8 +12,7 @@
 #include "peers/grid_task.h"
 #include "peers/interleaved.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 class Evaluation {
  public:
@@ -103,5 +102,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

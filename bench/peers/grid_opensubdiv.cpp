@@ -15,8 +15,7 @@
 #include "peers/grid_task.h"
 #include "peers/interleaved.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 namespace Far = OpenSubdiv::Far;
 namespace Osd = OpenSubdiv::Osd;
@@ -168,5 +167,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -6,8 +6,7 @@
 #include "peers/grid_task.h"
 #include "peers/sisl_protocol.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 /// The program sisl_grid, started for one task.
 class Process {
@@ -50,5 +49,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

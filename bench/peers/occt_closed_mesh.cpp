@@ -35,8 +35,7 @@
 #include "tessera/tessellation.h"
 #include "tessera/topology.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::value_of;
 
@@ -151,8 +150,7 @@ int run(std::vector<std::filesystem::path> files) {
   return good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char** argv) {
   std::vector<std::filesystem::path> files;

@@ -25,8 +25,7 @@
 #include "tessera/convert.h"
 #include "tessera/model.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int spans = 200, degree = 3, rounds = 20;
 
@@ -132,7 +131,6 @@ int run() {
   return 0;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main() { return tessera::bench::run(); }

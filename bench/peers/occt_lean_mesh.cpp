@@ -23,8 +23,7 @@
 #include "peers/results.h"
 #include "peers/tessera_search.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr char usage[] =
     "tessera_peer_occt_lean_mesh [--fewest] [--only NAME]\n\n"
@@ -238,8 +237,7 @@ int run(bool fewest, const std::string& only) {
   return report.good() ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char** argv) {
   bool fewest = false;

@@ -22,8 +22,7 @@
 #include "tessera/model.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int rounds = 3;
 constexpr int sample_steps = 10;  // 66 points of each triangle
@@ -152,7 +151,6 @@ int run() {
   return good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main() { return tessera::bench::run(); }

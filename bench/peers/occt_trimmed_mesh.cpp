@@ -35,8 +35,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr char usage[] =
     "tessera_peer_occt_trimmed_mesh [--only NAME] [--points N] [--no-sides] [--no-search] [FILE...]\n"
@@ -314,8 +313,7 @@ bool read_arguments(int argc, char** argv, Options& options) {
   return true;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char** argv) {
   for (int k = 1; k < argc; ++k)

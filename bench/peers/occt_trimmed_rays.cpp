@@ -31,8 +31,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::value_of;
 
@@ -292,8 +291,7 @@ int run(Options options) {
   return summary.is_good() ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char** argv) {
   tessera::bench::Options options;

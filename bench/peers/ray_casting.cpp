@@ -15,8 +15,7 @@
 #include "tessera/convert.h"
 #include "tessera/model.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::value_of;
 
@@ -149,8 +148,7 @@ int run() {
   return 0;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main() {
   try {

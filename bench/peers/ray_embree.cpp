@@ -13,8 +13,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 /// A scene of one geometry, and the rays.
 class Casting {
@@ -160,5 +159,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -18,8 +18,7 @@
 #include "peers/interleaved.h"
 #include "peers/ray_task.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr std::size_t step = 211;  // a prime, to avoid single columns of pixels
 
@@ -77,5 +76,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -17,8 +17,7 @@
 
 #include "peers/ray_task.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 namespace fs = std::filesystem;
 
@@ -137,5 +136,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -7,8 +7,7 @@
 #include "peers/ray_task.h"
 #include "peers/sisl_protocol.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr std::size_t step = 509;  // a prime, to spread rays over the picture
 
@@ -51,5 +50,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -15,8 +15,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/part_mesh.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::value_of;
 
@@ -106,7 +105,6 @@ int run(int argc, char** argv) {
   return same ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char** argv) { return tessera::bench::run(argc, argv); }

@@ -15,8 +15,7 @@
 #include "pieces/wavy_sheet.h"
 #include "tessera/surface_file.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 namespace fs = std::filesystem;
 
@@ -76,7 +75,6 @@ int run(int argc, char** argv) {
   return failed;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int argc, char** argv) { return tessera::bench::run(argc, argv); }

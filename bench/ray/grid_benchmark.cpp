@@ -17,8 +17,7 @@
 #include "timing.h"
 #include "torus_rays.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int cells = 12;  // per patch and direction
 
@@ -79,5 +78,4 @@ void closest(benchmark::State& state, const Scenes& scenes, const std::vector<Ra
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

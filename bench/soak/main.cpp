@@ -16,8 +16,7 @@
 #include "tessera/ray_scene.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using test::Random;
 using test::uniform_vector;
@@ -186,8 +185,7 @@ int run(const Options& options) {
   return growth <= options.max_growth ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench
 
 int main(int count, char** words) {
   tessera::bench::Options options;

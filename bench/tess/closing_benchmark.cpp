@@ -19,8 +19,7 @@
 #include "tessera/tessellation.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 /// A wavy cubic spline of 8 x `faces` spans along u and v, cut into faces of 8 x 8 spans.
 std::vector<ModelSurface> wavy_faces(int faces) {
@@ -139,5 +138,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -15,8 +15,7 @@
 #include "tessera/tessellation.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 constexpr int rows = 100, columns = 100, rate = 8;
 
@@ -102,5 +101,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

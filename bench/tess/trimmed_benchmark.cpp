@@ -15,8 +15,7 @@
 #include "tess/trimmed/cut_cells.h"
 #include "timing.h"
 
-namespace tessera::bench {
-namespace {
+namespace tessera::bench { namespace {
 
 using Triangle = PolygonTriangles::Triangle;
 
@@ -137,5 +136,4 @@ const bool registered = [] {
   return true;
 }();
 
-}  // namespace
-}  // namespace tessera::bench
+}}  // namespace tessera::bench

@@ -6,8 +6,7 @@
 
 #include <cstdint>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 template <class Vector>
 bool is_aligned(const Vector& vector, std::size_t to) {
@@ -28,5 +27,4 @@ TEST(Aligned, VectorsOfEverySize) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

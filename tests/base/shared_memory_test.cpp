@@ -11,8 +11,7 @@
 
 #include "support/allocations.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 static_assert(std::is_nothrow_move_constructible_v<SharedMemory> && std::is_nothrow_move_assignable_v<SharedMemory>);
 
@@ -95,5 +94,4 @@ TEST(SharedMemory, HandlesOfManyThreads) {
   EXPECT_EQ(held.blocks(), 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

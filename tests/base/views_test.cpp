@@ -7,8 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(Views, RecordsThatFit) {
   std::vector<float> memory(13);
@@ -32,5 +31,4 @@ TEST(Views, OfNoMemoryOrTooLittle) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

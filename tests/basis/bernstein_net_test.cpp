@@ -2,8 +2,7 @@
 
 #include "support/random_patches.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 BernsteinNet<double> random_net(Random& random, int m, int n) {
   BernsteinNet<double> net(m, n);
@@ -65,5 +64,4 @@ TEST(BernsteinNet, HalvesAreTheCurve) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 #include "support/random_patches.h"
 #include "support/reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Values = std::array<double, max_degree + 1>;
 constexpr double parameters[] = {0, 0x1p-60, 0.01, 0.25, 1.0 / 3, 0.5, 0.7, 0.999, 1 - 0x1p-53, 1};
@@ -89,5 +88,4 @@ TEST(Bernstein, SymmetricAtExactParameters) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

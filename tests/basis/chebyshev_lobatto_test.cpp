@@ -8,8 +8,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(ChebyshevLobatto, ParametersRunFromEndToEnd) {
   for (int n = 1; n <= 15; ++n) {
@@ -86,5 +85,4 @@ TEST(ChebyshevLobatto, RoundingStaysSmall) {
   EXPECT_LT(lobatto_to_bernstein_rounding(15, 1, 1), 1e-9);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

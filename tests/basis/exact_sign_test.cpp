@@ -9,8 +9,7 @@
 #include <random>
 #include <span>
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 __extension__ using Wide = __int128;
 
@@ -105,5 +104,4 @@ TEST(ExactSign, SumsThatCancel) {
   }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -7,8 +7,7 @@
 #include "support/errors.h"
 #include "support/random_patches.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Real = long double;
 
@@ -137,5 +136,4 @@ TEST(IntervalNumber, SaysWhereThereIsNoBound) {
   EXPECT_EQ(IntervalNumber(-3, 2).magnitude(), 3);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 
 #include "support/random_splines.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 KnotLine line_over(int degree, const std::vector<double>& knots) {
   const std::size_t p = static_cast<std::size_t>(degree);
@@ -137,5 +136,4 @@ TEST(Knots, BadOnesAreNamed) {
   EXPECT_EQ(check_range(2, knots, nan, 1, "the domain").code(), StatusCode::non_finite);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

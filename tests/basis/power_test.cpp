@@ -5,8 +5,7 @@
 #include "support/random_patches.h"
 #include "support/reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Values = std::array<double, max_degree + 1>;
 
@@ -47,5 +46,4 @@ TEST(Power, AgreesWithLongDouble) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 
 #include "support/random_patches.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Matrix random_matrix(Random& random, int rows, int columns) {
   Matrix matrix(rows, columns);
@@ -64,5 +63,4 @@ TEST(SmallMatrix, TensorProductIsTheDoubleSum) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

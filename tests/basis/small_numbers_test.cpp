@@ -4,8 +4,7 @@
 #include "basis/symmetric_eigen.h"
 #include "support/random_patches.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(SymmetricEigen, IsTheMatrixAgain) {
   Random random(1);
@@ -42,5 +41,4 @@ TEST(DoubleDouble, KeepsWhatDoublesLose) {
   EXPECT_NEAR((third * third * 9 + DoubleDouble{-1, 0}).rounded(), 0, 0x1p-102);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "support/random_patches.h"
 #include "tessera/detail/taylor.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Series = Taylor<double, 2>;
 
@@ -39,5 +38,4 @@ TEST(TaylorSums, AreTakenInTheOrderStated) {
   EXPECT_GT(distinguished, 100);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 
 #include "support/random_patches.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using TaylorSeries = Taylor<double, 5>;
 using RealSeries = Taylor<long double, 5>;
@@ -162,5 +161,4 @@ TEST(Taylor, BoundsInOneVariableAreThoseOfTwo) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "support/random_patches.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Affine random_affine(Random& random) {
   return {.columns = {uniform_vector(random, -2, 2), uniform_vector(random, -2, 2), uniform_vector(random, -2, 2)},
@@ -56,5 +55,4 @@ TEST(Affine, NothingIsStretchedBeyondTheBoundOfTheNorm) {
   EXPECT_EQ(Affine::scaled({}).norm_bound(), 0);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <random>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Boxes on a grid of halves, so that many touch; every seventh is empty.
 std::vector<Box3> random_boxes(std::size_t count, double x, std::mt19937& random) {
@@ -45,5 +44,4 @@ TEST(BoxTree, FindsBothEndsOfAStrip) {
   for (std::size_t k = 0; k < others.size(); ++k) EXPECT_EQ(tree.touches(others[k], 0.25), k < 2);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

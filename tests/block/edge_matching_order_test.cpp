@@ -14,8 +14,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 void append(std::ostream& out, const Curve& curve) {
   for (const Vec3& p : curve.points()) out << p.x << ' ' << p.y << ' ' << p.z << ' ';
@@ -239,5 +238,4 @@ TEST(EdgeMatchingOrder, BadInputIsRefused) {
   expect_refused(joined_shape(failing, 1e-3), StatusCode::non_finite, 1, "face 1 (bad): ");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

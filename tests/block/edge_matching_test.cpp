@@ -12,8 +12,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/quadric.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(EdgeMatching, SidesOfACubeBecomeTwelveEdges) {
   const Shape shape = joined(cube(), 1e-3);
@@ -246,5 +245,4 @@ TEST(EdgeMatching, PlacesThatDivideACurveDivideItsNeighbours) {
   EXPECT_EQ(counts_of(joined({first, second, third, fourth}, distance)), (Counts{{1, 13}, {2, 3}}));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -16,8 +16,7 @@
 #include "tessera/model_part.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Curve line_over(const Vec3& from, const Vec3& to, const Interval& interval = {}) {
   return value_of(Curve::bezier(std::vector{from, to}, {}, interval));
@@ -217,5 +216,4 @@ TEST(Model, ExtentsAreTheBoxesOfThePatches) {
   EXPECT_TRUE(extents.fit_error.certified);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

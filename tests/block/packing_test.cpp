@@ -12,8 +12,7 @@
 #include "tessera/convert.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// More patches and blocks than one piece of work holds.
 std::vector<BezierPatch> many_patches() {
@@ -118,5 +117,4 @@ TEST(Packing, ASplineGivesTheSetOfItsPatches) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

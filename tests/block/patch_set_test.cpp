@@ -13,8 +13,7 @@
 #include "surface/net/homogeneous.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(PatchSet, EveryPatchHasItsOwnPlaceAmongItsLikes) {
   Random random(71);
@@ -199,5 +198,4 @@ TEST(Model, SurfacesBecomeSources) {
   EXPECT_EQ(make_patch_set(Model{}).status().code(), StatusCode::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -12,8 +12,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::array<std::array<std::uint32_t, 4>, 6> cube_faces{
     {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
@@ -265,5 +264,4 @@ TEST(Topology, IdsOfNothingAreRefused) {
   expect_refused(placed_faces(model.shapes, wrong), StatusCode::invalid_argument, 0, "instance 0: it is of shape 2");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

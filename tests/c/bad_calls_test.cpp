@@ -5,8 +5,7 @@
 #include "c/c_objects.h"
 #include "support/errors.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(CBadCalls, StructsOfAnotherSize) {
   const Handle<tsr_set> set = set_of(wavy_field(1, 1));
@@ -198,5 +197,4 @@ TEST(CBadCalls, CancelledOnes) {
   EXPECT_C(tsr_release(plan));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 #include "c/c_objects.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(CEvaluate, GridsInFloatAndDouble) {
   const std::vector<BezierPatch> patches = wavy_field(2, 3);
@@ -94,5 +93,4 @@ TEST(CEvaluate, WhatTheSetLacks) {
   expect_c_error(tsr_set_evaluate(set.get(), nullptr, &at, &at, &jets, nullptr), TSR_UNSUPPORTED, "is_double");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

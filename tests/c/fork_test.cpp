@@ -5,8 +5,7 @@
 
 #include "c/c_objects.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Runs a call in a child process. Returns its status; -1 if the child did not end by itself.
 template <class Call>
@@ -36,5 +35,4 @@ TEST(CFork, ChildrenOfAProcessThatComputedGetErrors) {
             TSR_OK);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 
 #include "c/c_objects.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(CHandles, ObjectsKeepWhatTheyNeed) {
   Handle<tsr_model> model = model_of(wavy_field(2, 2));
@@ -116,5 +115,4 @@ TEST(CHandles, ErrorsBelongToTheirThread) {
   EXPECT_STREQ(tsr_status_name(17), "unknown");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh mesh_in_cpp(const std::vector<BezierPatch>& patches, const TessellationOptions& options) {
   const PatchSet set = value_of(PatchSet::make(patches));
@@ -191,5 +190,4 @@ TEST(CMesh, FilesFarFromZeroKeepTheBoundAndTheirRounding) {
   EXPECT_EQ(kept, 7);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

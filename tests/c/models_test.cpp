@@ -9,8 +9,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Handle<tsr_model> read(const std::string& path) {
   tsr_model* model = nullptr;
@@ -161,5 +160,4 @@ TEST(CModel, BadSurfacesAreNamed) {
   expect_c_error(tsr_model_new(&made, surfaces.data(), 0), TSR_INVALID_ARGUMENT, "no surfaces");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

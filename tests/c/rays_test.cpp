@@ -6,8 +6,7 @@
 #include "c/c_objects.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::size_t ray_count = 500;
 
@@ -194,5 +193,4 @@ TEST(CRays, RefitsFollowEdits) {
   EXPECT_NEAR(found.t[0], 3, 1e-14);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
 
@@ -195,5 +194,4 @@ TEST_F(Conformance, EveryFileIsReadWholeOrRefusedForItsReason) {
 #endif
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

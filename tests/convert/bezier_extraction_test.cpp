@@ -12,8 +12,7 @@
 #include "tessera/convert.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::vector<KnotStyle> extracted_styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
 
@@ -349,5 +348,4 @@ TEST(BezierExtraction, RefusesMeansThatAreNotFinite) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/ulp.h"
 #include "tessera/bezier_operations.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const double half_root = std::sqrt(0.5);
 const BezierPolygon quarter_circle{{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {1, half_root, 1}};
@@ -95,5 +94,4 @@ TEST(BezierMakers, RefuseBadCurves) {
   expect_refused(make_hyperbolic_paraboloid({}, {}, {}, {0, 0, not_a_number}), StatusCode::non_finite, 3, "[1][1]");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

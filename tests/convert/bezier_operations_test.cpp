@@ -8,8 +8,7 @@
 #include "support/synthetic_sets.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double parameters[] = {0, 0.1, 0.5, 0.8125, 1};
 
@@ -323,5 +322,4 @@ TEST(BezierOperations, RefuseBadArguments) {
   expect_refused(derivative_patch(huge, 1, 0), StatusCode::non_finite, 0, "control point [0][0] is (-inf");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

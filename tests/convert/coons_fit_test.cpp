@@ -7,8 +7,7 @@
 #include "support/errors.h"
 #include "tessera/generic_callable.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The largest distance between a surface and its patches.
 template <class Surface>
@@ -120,5 +119,4 @@ TEST(CoonsFit, FailsAsItsBordersDo) {
                  StatusCode::non_finite, -1, "the first curve: the curve at t = 0.5");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/random_hermite.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Blend quintic() {
   return value_of(
@@ -168,5 +167,4 @@ TEST(CoonsToBezier, Refuses) {
   expect_refused(to_bezier(coons(huge)), StatusCode::non_finite, 4, "patch [0][0]");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

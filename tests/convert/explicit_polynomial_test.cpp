@@ -9,8 +9,7 @@
 #include "support/ulp.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 // 113 bits: long double on some machines, a type of its own on others.
 #if __LDBL_MANT_DIG__ >= 113
@@ -115,5 +114,4 @@ TEST(ExplicitPolynomial, RefusesBadInput) {
   EXPECT_EQ(to_bezier(graph(2, 0, {0, 0, 1}, {0, 1e200, 0, 1})).status().code(), StatusCode::non_finite);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

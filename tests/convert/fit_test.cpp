@@ -9,8 +9,7 @@
 #include "support/ulp.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The largest distance at equal parameters, on `count` x `count` points of every patch, away from the places that fits
 /// sample.
@@ -327,5 +326,4 @@ TEST(Fit, NamesWhatGoesWrongInTheMiddle) {
                  "too large");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "tessera/convert.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(HermiteToBezier, IsThePatchOverItsDomain) {
   Random random(1);
@@ -120,5 +119,4 @@ TEST(HermiteToBezier, RefusesWhatOverflows) {
   expect_refused(to_bezier(patch), StatusCode::non_finite, 4, "control point [1][0] is (inf, 0, 0)");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 constexpr Edge edges[] = {Edge::u0, Edge::u1, Edge::v0, Edge::v1};
@@ -255,5 +254,4 @@ TEST(Join, DegeneratePatchesGiveNumbers) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 
 #include "convert/peer_cases.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Cases where the peer errs, or chose another convention: checked to differ still, and counted apart.
 struct KnownDifference {
@@ -128,5 +127,4 @@ TEST(PeerCases, Evaluations) {
               << entry.reason << '\n';
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

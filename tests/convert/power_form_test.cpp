@@ -3,8 +3,7 @@
 #include "support/random_patches.h"
 #include "support/reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// M in B_{k,n}(t) = sum_i M_ik t^i.
 Real matrix_entry(int n, int i, int k) {
@@ -92,5 +91,4 @@ TEST(PowerForm, IsTheSamePolynomial) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

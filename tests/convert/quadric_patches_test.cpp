@@ -6,8 +6,7 @@
 #include "support/ulp.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double pi = std::numbers::pi;
 
@@ -130,5 +129,4 @@ TEST(QuadricPatches, LongHyperbolasAreCut) {
   EXPECT_EQ(to_bezier(piece(quadric({.a = 1, .b = -1, .k = -1}), {-300, 300, 0, 1}))->count_u(), 300u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/ulp.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct Pair {
   BorderStyle first, second;
@@ -130,5 +129,4 @@ TEST(RuledToBezier, HugeCurvesStayFinite) {
   EXPECT_EQ(grid.evaluate_jet(0.5, 0.5)->position, (Vec3{5e299, 5e299, 0}));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

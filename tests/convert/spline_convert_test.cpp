@@ -6,8 +6,7 @@
 #include "support/random_splines.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::vector<KnotStyle> knot_styles{{0}, {3}, {3, true, true}, {2, false, false}, {2, false, true}};
 
@@ -198,5 +197,4 @@ TEST(SplineConvert, BadInputIsNamed) {
   EXPECT_EQ(elevate_degree(curve, std::numeric_limits<int>::max()).status().code(), StatusCode::unsupported_degree);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

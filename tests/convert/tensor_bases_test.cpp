@@ -7,8 +7,7 @@
 #include "support/ulp.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 double largest_element(std::span<const Vec3> elements) {
   double largest = 0;
@@ -169,5 +168,4 @@ TEST(ChangeOfBasis, RefusesWhatHasNoForm) {
   expect_refused(to_bezier(huge), StatusCode::non_finite, 2, "control point [1][0] is (inf, 0, 0)");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -13,8 +13,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Largest errors over a set in the units of evaluate.h: so that their bounds are 2, 4, 16, 16 and 8.
 struct PositionErrors {
@@ -249,5 +248,4 @@ TEST_P(Accuracy, NormalsOfTinyPatchesAmongLargeOnes) {
 INSTANTIATE_TEST_SUITE_P(EveryIsa, Accuracy, ::testing::ValuesIn(available_isas().begin(), available_isas().end()),
                          [](const auto& param) { return std::string(name(param.param)); });
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

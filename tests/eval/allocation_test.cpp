@@ -15,8 +15,7 @@
 #include "support/borders.h"
 #include "support/points.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 template <class Call>
 void expect_no_allocation(Call&& call) {
@@ -119,5 +118,4 @@ TEST(Stack, IsWithinWhatIsStated) {
 }
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "tessera/evaluate.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 template <class T, class Surface>
 void check_callable(const Surface& surface, const std::function<Vec3(double, double)>& at) {
@@ -51,5 +50,4 @@ TEST(CallableOutputs, ArePositionsAlone) {
   check_callable<double>(coons, place);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "support/grids.h"
 #include "support/suite_isa.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 bool available(Isa isa) { return std::ranges::count(available_isas(), isa) > 0; }
 
@@ -86,5 +85,4 @@ TEST(Isa, EnvironmentForcesOne) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 
 #include "support/grids.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class EvaluateErrors : public ::testing::Test {
  protected:
@@ -189,5 +188,4 @@ TEST_F(EvaluateErrors, CancelledBeforeTheFirstTask) {
   EXPECT_EQ(evaluate(set, plan, out.views(), execution).code(), StatusCode::cancelled);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 
 #include "support/grids.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<double> flat_parameters(int count) {
   std::vector<double> t;
@@ -67,5 +66,4 @@ TEST(FlatGrid, PartsOfOnePatch) {
       check_flat(2, nu, nv, 5, Stores::automatic, isa);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -13,8 +13,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Sizes by which the bounds of evaluate.h are stated, at one point of a patch about the set's origin.
 struct Sizes {
@@ -252,5 +251,4 @@ INSTANTIATE_TEST_SUITE_P(EveryIsa, GeometryAccuracy,
                          ::testing::ValuesIn(available_isas().begin(), available_isas().end()),
                          [](const auto& param) { return std::string(name(param.param)); });
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -15,8 +15,7 @@
 #include "tessera/convert.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 PatchSetOptions both_precisions() {
   PatchSetOptions options;
@@ -354,5 +353,4 @@ TEST_P(Geometry, KindsInEveryLayout) {
 INSTANTIATE_TEST_SUITE_P(EveryIsa, Geometry, ::testing::ValuesIn(available_isas().begin(), available_isas().end()),
                          [](const auto& param) { return std::string(name(param.param)); });
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

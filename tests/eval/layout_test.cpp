@@ -6,8 +6,7 @@
 
 #include "support/grids.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// All outputs of a small mixed set, as triples.
 template <class T>
@@ -138,5 +137,4 @@ TEST(Layout, AnySubsetOfOutputs) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

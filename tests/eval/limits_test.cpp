@@ -7,8 +7,7 @@
 #include "support/grids.h"
 #include "tessera/limits.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(Limits, AreMeasuredForEachIsa) {
   for (const Isa isa : available_isas()) {
@@ -63,5 +62,4 @@ TEST(Limits, TheSlowerOfComputingAndStoringCounts) {
   EXPECT_DOUBLE_EQ(seconds_at_limit(limits, {.lane_operations = 10, .bytes_written = 20}), 2);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 
 #include "support/grids.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Positions and normals of a set with whole and partial blocks, from the block-interleaved layout.
 template <class T>
@@ -141,5 +140,4 @@ TEST(Lines, GridsInPieces) {
   for (const Isa isa : available_isas()) check_line_grid<float>(67, 61, isa, {3});
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

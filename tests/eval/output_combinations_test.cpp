@@ -13,8 +13,7 @@
 #include "support/reference.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A place on a patch.
 struct Place {
@@ -365,5 +364,4 @@ TEST(OutputCombinations, UpdatesOfTouchedBlocks) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "support/lecture_surfaces.h"
 #include "support/synthetic_sets.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<double> parameters(std::size_t count, double from, double to) {
   std::vector<double> values(count);
@@ -119,5 +118,4 @@ TEST(ParametricGrid, TheFirstFailureIsTold) {
               StatusCode::cancelled);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 
 #include "support/grids.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::size_t count_u = 4, count_v = 5;
 
@@ -90,5 +89,4 @@ TEST(PatchParameters, Errors) {
   EXPECT_EQ(status({0, std::numeric_limits<double>::quiet_NaN()}, {0, 1}).code(), StatusCode::non_finite);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

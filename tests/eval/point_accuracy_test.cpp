@@ -12,8 +12,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Largest errors, each in the unit of its bound.
 struct Errors {
@@ -166,5 +165,4 @@ TEST_P(PointAccuracy, TheBitsOfGridsWhereWeightsAreExact) {
 INSTANTIATE_TEST_SUITE_P(EveryIsa, PointAccuracy, ::testing::ValuesIn(available_isas().begin(), available_isas().end()),
                          [](const auto& param) { return std::string(name(param.param)); });
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

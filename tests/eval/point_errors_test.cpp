@@ -6,8 +6,7 @@
 
 #include "support/points.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class PointErrors : public ::testing::Test {
  protected:
@@ -152,5 +151,4 @@ TEST_F(PointErrors, NoSamplesAreNoError) {
   EXPECT_EQ(positions_[0], -7);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 
 #include "support/points.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr float canary = -7;
 
@@ -90,5 +89,4 @@ TEST(PointLayout, StridedSamples) {
   EXPECT_TRUE(out == all_outputs(set, samples));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

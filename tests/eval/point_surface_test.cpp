@@ -8,8 +8,7 @@
 #include "tessera/convert.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Surfaces of several degrees, polynomial and rational, with single and multiple knots, as one set.
 struct Surfaces {
@@ -183,5 +182,4 @@ TEST(PointsOfSurfaces, BadInput) {
   EXPECT_EQ(SurfaceMap::make(holes).status().index(), 0);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 template <class T>
 AllBuffers<T> run(const PatchSet& set, const Samples<T>& samples, Isa isa, int threads, ExecutionReport& report) {
@@ -228,5 +227,4 @@ TEST(Points, ProgressIsToldAndCancellationSeen) {
   EXPECT_EQ(evaluate(set, samples.views(), out, {}, execution).code(), StatusCode::cancelled);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A cap over the unit square's parameters whose edge u = 0 is one point: r = (u cos-like, u sin-like, 1 - u^2).
 BezierPatch cap() {
@@ -115,5 +114,4 @@ TEST(SharedBorders, ACollapsedBorderIsOnePoint) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

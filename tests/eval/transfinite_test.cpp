@@ -17,8 +17,7 @@
 #include "support/suite_isa.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<double> blend_parameters(double from, double to, std::size_t count) {
   std::vector<double> t;
@@ -288,5 +287,4 @@ TEST(Transfinite, TellsItsProgress) {
   EXPECT_EQ(told.back(), 1);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

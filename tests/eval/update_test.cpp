@@ -13,8 +13,7 @@
 #include "support/allocations.h"
 #include "support/points.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 PatchSetOptions every_kind() {
   PatchSetOptions options;
@@ -334,5 +333,4 @@ TEST(Update, CancellationLeavesEachPatchWhole) {
   EXPECT_LT(written, patches.size());
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "house/tree.h"
 #include "tessera/version.h"
 
-namespace tessera::house {
-namespace {
+namespace tessera::house { namespace {
 
 // Functions that make the Status of an error which the caller has found.
 const std::vector<std::string> error_makers{"in_surface", "expected", "failure", "refused_element"};
@@ -251,5 +250,4 @@ TEST(Version, HasOneValue) {
   EXPECT_GT(checked, 400u);
 }
 
-}  // namespace
-}  // namespace tessera::house
+}}  // namespace tessera::house

@@ -12,8 +12,7 @@
 #include "house/output_of.h"
 #include "house/tree.h"
 
-namespace tessera::house {
-namespace {
+namespace tessera::house { namespace {
 
 TEST(ExportedSymbols, DeclarationsAreFoundByName) {
   const std::string header =
@@ -109,12 +108,11 @@ TEST(ExportedSymbols, PublicHeadersSaySo) {
     if (path.ends_with("/tessera.h")) continue;    // it declares nothing
     if (path.ends_with("/tessera_c.h")) continue;  // it has no namespace; the test c.abi lists its functions
     const std::string text = read_text(path);
-    EXPECT_NE(text.find("\n#pragma GCC visibility push(default)\nnamespace tessera::inline abi_0_1 {\n"),
+    EXPECT_NE(text.find("\n#pragma GCC visibility push(default)\nnamespace tessera { inline namespace abi_0_1 {\n"),
               std::string::npos)
         << path;
-    EXPECT_TRUE(text.ends_with("}  // namespace tessera::inline abi_0_1\n#pragma GCC visibility pop\n")) << path;
+    EXPECT_TRUE(text.ends_with("}}  // namespace tessera::abi_0_1\n#pragma GCC visibility pop\n")) << path;
   }
 }
 
-}  // namespace
-}  // namespace tessera::house
+}}  // namespace tessera::house

@@ -52,7 +52,8 @@ def fault_of(source, fragment, commands):
     if commands[isa] is None:
         return ''
     lines = [f'#include "{header}"' for header in dict.fromkeys(headers_of(source, fragment, set()))]
-    lines += ['namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {', 'namespace {', f'#include "{fragment}"', '}}']
+    lines += ['namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {']
+    lines += ['namespace {', f'#include "{fragment}"', '}}}}}']
     done = subprocess.run(commands[isa], input='\n'.join(lines) + '\n', text=True, capture_output=True, check=False)
     return f'{fragment}:\n{done.stderr[:400]}' if done.returncode else ''
 

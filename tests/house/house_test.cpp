@@ -13,8 +13,7 @@
 #include "house/function_lengths.h"
 #include "house/tree.h"
 
-namespace tessera::house {
-namespace {
+namespace tessera::house { namespace {
 
 // "About 400 lines at the most": a source file that needs more holds more than one idea. Guides may be longer.
 constexpr std::ptrdiff_t longest_file = 400;
@@ -105,13 +104,17 @@ bool names_instructions(const std::string& text) {
 
 /// The types that a file defines at the level of a namespace which other files may open too, by their full names.
 std::vector<std::string> type_names(const std::string& text) {
-  const std::regex opens(R"(namespace ?(.*) \{)"), defines(R"((?:class|struct|union) (\w+)(?: final)?(?: :.*| ?\{.*))");
+  const std::regex opens(R"(\bnamespace ?([\w:]*) \{)"), closes(R"((\}+)  // namespace.*)"),
+      defines(R"((?:class|struct|union) (\w+)(?: final)?(?: :.*| ?\{.*))");
   std::vector<std::string> spaces, names;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) {
     std::smatch found;
-    if (std::regex_match(line, found, opens)) spaces.push_back(found[1]);
-    if (line.starts_with("}  // namespace") && !spaces.empty()) spaces.pop_back();
+    const bool opens_one = line.starts_with("namespace");
+    for (std::sregex_iterator at(line.begin(), line.end(), opens); opens_one && at != std::sregex_iterator(); ++at)
+      spaces.push_back((*at)[1]);
+    if (std::regex_match(line, found, closes))
+      spaces.resize(spaces.size() - std::min(spaces.size(), static_cast<std::size_t>(found[1].length())));
     if (!std::regex_match(line, found, defines) || std::ranges::find(spaces, "") != spaces.end()) continue;
     std::string name;
     for (const std::string& space : spaces) name += space + "::";
@@ -123,8 +126,10 @@ std::vector<std::string> type_names(const std::string& text) {
 TEST(House, SearchForTypesFindsThem) {
   EXPECT_EQ(type_names(
                 "struct A;\nnamespace a::b {\nclass C : B {\n  struct D {\n};\n}  // namespace a::b\nstruct E final {\n"
-                "namespace a {\nnamespace {\nstruct F {\n}  // namespace\nunion G {};\n"),
-            (std::vector<std::string>{"a::b::C", "E", "a::G"}));
+                "namespace a { inline namespace b {\nnamespace {\nstruct F {\n}  // namespace\nunion G {};\n}}  // "
+                "namespace a::b\n"
+                "struct H {\n"),
+            (std::vector<std::string>{"a::b::C", "E", "a::b::G", "H"}));
 }
 
 // Two types of one name are one to the linker: it keeps the inline functions of one of them, such as its destructor.
@@ -180,5 +185,4 @@ TEST(House, NoFunctionChoosesInstructionsForItself) {
   EXPECT_TRUE(std::regex_search(std::string("#pragma GCC target(\"avx2\")"), attribute));
 }
 
-}  // namespace
-}  // namespace tessera::house
+}}  // namespace tessera::house

@@ -8,8 +8,7 @@
 
 #include "house/tree.h"
 
-namespace tessera::house {
-namespace {
+namespace tessera::house { namespace {
 
 constexpr std::string_view sample_table = R"(
 floor base            # comments are left out
@@ -177,5 +176,4 @@ TEST(Engine, TheBuildTellsTheSameStoryAsTheTable) {
   for (const auto& [floor, below] : built.on) EXPECT_EQ(built.reachable(floor), table.reachable(floor)) << floor;
 }
 
-}  // namespace
-}  // namespace tessera::house
+}}  // namespace tessera::house

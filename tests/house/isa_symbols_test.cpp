@@ -11,8 +11,7 @@
 
 #include "house/output_of.h"
 
-namespace tessera::house {
-namespace {
+namespace tessera::house { namespace {
 
 TEST(IsaSymbols, ForeignFunctionsAreFound) {
   const auto unit = isa_unit_of("/build/tessera_kernel_avx512.dir/src/kernel/grid/unit_grid.cpp.o");
@@ -72,5 +71,4 @@ TEST(IsaSymbols, ObjectsHoldOnlyTheirOwn) {
   for (const auto& [isa, count] : units) EXPECT_EQ(count, units.begin()->second) << isa;
 }
 
-}  // namespace
-}  // namespace tessera::house
+}}  // namespace tessera::house

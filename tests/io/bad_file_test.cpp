@@ -10,8 +10,7 @@
 #include "support/privileges.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class BadFile : public testing::TestWithParam<TextFormat> {
  protected:
@@ -90,5 +89,4 @@ TEST_P(BadFile, LinksAreFollowed) {
   EXPECT_TRUE(open(folder_ / name("link")).content == open(path).content);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

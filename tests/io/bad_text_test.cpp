@@ -11,8 +11,7 @@
 #include "support/allocations.h"
 #include "support/comma_locale.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class BadText : public testing::TestWithParam<TextFormat> {
  protected:
@@ -226,5 +225,4 @@ TEST_P(BadText, CountsThatTheTextDoesNotHoldTakeNoMemory) {
   EXPECT_LE(most, std::size_t{100000}) << greedy;
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

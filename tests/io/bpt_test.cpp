@@ -8,8 +8,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 const std::string teapot_path = TESSERA_SOURCE_DIR "/tools/models/teapot.bpt";
 
@@ -190,5 +189,4 @@ TEST(Bpt, TheTeapotEqualsThePublishedCopies) {
   }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -6,8 +6,7 @@
 
 #include "io/reader_checks.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::string bilinear = "4 1\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n";
 const std::string mixed = "Group 1 left\n5\n1 2\n0 0 0\n0 1 1\n0 2 0\n1 0 0\n1 1 1\n1 2 0\n" + bilinear +
@@ -125,5 +124,4 @@ TEST(Bv, CutsAreHarmless) {
 }
 TEST(Bv, SpoiledBytesAreHarmless) { expect_spoiled_bytes_are_harmless(parse_bv, mixed); }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

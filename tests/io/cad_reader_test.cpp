@@ -20,8 +20,7 @@
 #include "tessera/io.h"
 #include "tessera/version.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
 
@@ -260,5 +259,4 @@ TEST_F(CadReader, ItsLackIsAnErrorThatSaysWhatToDo) {
                  "none.igs: cannot be opened");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -12,8 +12,7 @@
 #include "support/errors.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using namespace std::chrono_literals;
 constexpr std::size_t plenty = std::size_t{1} << 27;
@@ -131,5 +130,4 @@ TEST(ChildProcess, IgnoresTheHangUpThatItsParentIgnoresButNoCrash) {
   EXPECT_EQ(words, "up\n");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

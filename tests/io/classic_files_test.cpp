@@ -15,8 +15,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 namespace fs = std::filesystem;
 
@@ -137,5 +136,4 @@ TEST_F(ClassicFiles, ValuesOfOtherProgramsAreMet) {
   EXPECT_GE(points, 20u);
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

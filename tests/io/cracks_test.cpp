@@ -12,8 +12,7 @@
 #include "support/real_files.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The models below a folder, in order.
 std::set<std::filesystem::path> models_below(const std::filesystem::path& folder) {
@@ -86,5 +85,4 @@ TEST(Cracks, AreFoundWhereVerticesPart) {
   EXPECT_GT(torn.cracks + torn.own_edges, whole.own_edges);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "support/random_patches.h"
 #include "support/synthetic_sets.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 constexpr std::array<std::string_view, 2> uv{"u", "v"};
 
@@ -209,5 +208,4 @@ TEST(Expression, ConstantsHaveNoVariablesAndAreFinite) {
   test::expect_refused(constant_value("0/0"), StatusCode::non_finite, Status::no_index, "is not finite");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -10,8 +10,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A unit sphere's mesh, and what is proven of it.
 struct Ball {
@@ -88,5 +87,4 @@ TEST(FarMesh, NearZeroFilesHoldFloatsAsBefore) {
   EXPECT_EQ(bytes.find("property double x"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

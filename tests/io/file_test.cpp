@@ -15,8 +15,7 @@
 #include "tessera/files.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::content_of;
 using test::ScratchFolder;
@@ -229,5 +228,4 @@ TEST(OutputFile, AFailureInTheMiddleLeavesNothing) {
   EXPECT_EQ(content_of(folder / "a"), "before");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

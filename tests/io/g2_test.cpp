@@ -13,8 +13,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double pi = std::numbers::pi;
 
@@ -373,5 +372,4 @@ TEST(G2, LoopsThatAreWrong) {
       StatusCode::parse_error, Status::no_index, "its loops enclose nothing");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -16,8 +16,7 @@
 #include "tessera/io.h"
 #include "tessera/mesh_assembly.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::random_mesh;
 using test::ScratchFolder;
@@ -269,5 +268,4 @@ TEST(AssemblyFiles, OtherFormatsHoldOneMesh) {
   EXPECT_EQ(write_assembly({}, folder / "m.ply").message(), (folder / "m.ply") + ": the mesh has no vertices");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

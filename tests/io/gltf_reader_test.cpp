@@ -14,8 +14,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using nlohmann::json;
 using test::random_mesh;
@@ -360,5 +359,4 @@ TEST_F(GltfReading, ContainersMustBeWhole) {
             "m:1: /buffers/0: expected 100 bytes (byteLength), found 56");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

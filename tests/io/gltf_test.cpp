@@ -17,8 +17,7 @@
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::random_mesh;
 using test::ScratchFolder;
@@ -217,5 +216,4 @@ TEST(GltfFiles, TheContainerIsWhatTheSpecificationSays) {  // section 4.4
   }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

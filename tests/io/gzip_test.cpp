@@ -14,8 +14,7 @@
 #include <zlib.h>
 #endif
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 #ifdef TESSERA_HAS_ZLIB
 
@@ -142,5 +141,4 @@ TEST(Gzip, WithoutZlibTheMessageSaysWhatToInstall) {
 
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

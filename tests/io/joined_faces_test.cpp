@@ -12,8 +12,7 @@
 #include "tessera/tessellation.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 // Trimmed faces without topology, whose edges CAD curves state to 1e-4: vertices that nearly coincide along an edge must
 // not draw its ends together. Lines that close gaps in loops cross from patch to patch, and loops pass corners of patches
@@ -36,5 +35,4 @@ TEST(JoinedFaces, OfAWingletLeaveNoOpenEdge) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "io/model_text.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::string json_error(std::string_view text, StatusCode code = StatusCode::parse_error) {
   const Result<Model> model = parse_json_model(text, "m.json");
@@ -282,5 +281,4 @@ TEST(JsonErrors, SpoiledModelsAreReadOrRefused) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

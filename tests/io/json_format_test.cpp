@@ -9,8 +9,7 @@
 #include "io/model_text.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::string document() { return content_of(TESSERA_SOURCE_DIR "/tools/models/FORMAT.md"); }
 
@@ -74,5 +73,4 @@ TEST(JsonFormat, EveryKeyIsTold) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

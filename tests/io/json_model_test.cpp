@@ -12,8 +12,7 @@
 #include "support/random_splines.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::string field(const std::string& key, const std::string& value) { return "\"" + key + "\": " + value; }
 
@@ -371,5 +370,4 @@ TEST(JsonModel, NamesAndPlaceOfTheModel) {
   EXPECT_EQ(model.surfaces[1].name, "");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

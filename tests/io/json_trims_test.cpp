@@ -8,8 +8,7 @@
 #include "support/random_splines.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A surface of each kind, without its closing brace.
 const std::vector<std::pair<std::string, std::string>> curve_kinds{
@@ -154,5 +153,4 @@ TEST(JsonTrims, ErrorsNameTheirPlace) {
             "m.json:3: /surfaces/0/trims/0/curves/0: unknown key \"axis\"; known keys are kind, center, radius, arcs");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -17,8 +17,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::Attributes;
 using test::random_mesh;
@@ -311,5 +310,4 @@ TEST(Formats, WhatCannotBeOpenedIsSaidFirst) {
   EXPECT_EQ(read_mesh(folder.file("empty.obj", "")).status().message(), (folder / "empty.obj") + ": the file is empty");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -13,8 +13,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
@@ -338,5 +337,4 @@ TEST(VtpPieces, AFullDiskLeavesNothing) {
   EXPECT_EQ(folder.names(), Names{});
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Model sample() {
   Model model{"part", {}, {"one warning", "another"}};
@@ -152,5 +151,4 @@ TEST_P(BadModelBytes, AreRefused) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BadModelBytes, testing::Bool());
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

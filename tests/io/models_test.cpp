@@ -16,8 +16,7 @@
 #include "tessera/bezier_operations.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::filesystem::path folder = TESSERA_SOURCE_DIR "/tools/models";
 
@@ -271,5 +270,4 @@ TEST(Models, QuadricsAreWhatTheirFilesSay) {
   EXPECT_EQ(kinds.size(), 11u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 namespace fs = std::filesystem;
 
@@ -51,5 +50,4 @@ TEST_F(ObjFiles, PointsAreThoseThatAnotherReaderExpects) {
   std::cout << values << " values\n";
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

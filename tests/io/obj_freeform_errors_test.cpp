@@ -5,8 +5,7 @@
 #include "io/obj_samples.h"
 #include "support/allocations.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using namespace test;
 
@@ -238,5 +237,4 @@ TEST(ObjFreeformErrors, SmallFilesCannotAskForMuchMemory) {
       EXPECT_LE(memory_of(text, parse), 2000 * text.size() + 100000) << text.substr(0, 60);
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

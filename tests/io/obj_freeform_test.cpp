@@ -7,8 +7,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/convert.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using namespace test;
 
@@ -375,5 +374,4 @@ TEST(ObjFreeform, FilesAreReadByTheirExtension) {
   EXPECT_EQ(read_mesh(mesh)->triangle_count(), 1u);
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

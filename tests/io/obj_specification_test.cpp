@@ -12,8 +12,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using Blend = std::vector<double> (*)(double t);
 
@@ -176,5 +175,4 @@ TEST_F(ObjSpecification, TheTrimmedNurbHasItsRationalLoop) {
   }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -6,8 +6,7 @@
 
 #include "io/mesh/mesh_formats.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -92,5 +91,4 @@ TEST(Obj, ErrorsNameTheLine) {
             "m.obj:2: expected an index of a corner, found \"99999999999999999999\"");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

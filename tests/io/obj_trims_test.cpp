@@ -6,8 +6,7 @@
 #include "io/obj_samples.h"
 #include "tessera/trim_region.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using namespace test;
 
@@ -65,5 +64,4 @@ TEST(ObjTrims, KeepWhatTheyEnclose) {
     }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -11,8 +11,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -164,5 +163,4 @@ TEST(Ply, SpoiledBytesNeverCrash) {
   }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -14,8 +14,7 @@
 #include "support/real_files.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
 using Parser = Result<Model> (*)(std::string_view, std::string_view);
@@ -216,5 +215,4 @@ TEST(ReadingMemory, TheTersestFiles) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

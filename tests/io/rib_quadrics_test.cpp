@@ -12,8 +12,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -257,5 +256,4 @@ TEST_F(RibArchiveFiles, CopiesAreLimited) {
   EXPECT_EQ(model->surfaces.size(), 1000u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 
 #include "io/reader_checks.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::string quad = "Patch \"bilinear\" \"P\" [0 0 0  1 0 0  0 1 0  1 1 0]\n";
 
@@ -225,5 +224,4 @@ TEST(RibScene, LayoutDoesNotMatter) { expect_layout_does_not_matter(parse_rib, s
 TEST(RibScene, CutsAreHarmless) { expect_cuts_are_harmless(parse_rib, scene); }
 TEST(RibScene, SpoiledBytesAreHarmless) { expect_spoiled_bytes_are_harmless(parse_rib, scene); }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "io/reader_checks.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Matrix = std::array<double, 16>;
 
@@ -319,5 +318,4 @@ TEST(Rib, TrimCurvesKeepWhatTheyEnclose) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

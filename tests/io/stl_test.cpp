@@ -11,8 +11,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::random_mesh;
 using test::ScratchFolder;
@@ -173,5 +172,4 @@ TEST(Stl, ErrorsNameThePlace) {
             "m.stl:4: expected 3 numbers after vertex, found \"0,5\"");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -18,8 +18,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
 
@@ -296,5 +295,4 @@ TEST(SurfaceFile, MemoryIsThatOfARun) {
   EXPECT_LT(peak_bytes() - before, std::size_t{6} << 20);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

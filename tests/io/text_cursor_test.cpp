@@ -10,8 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 double number_of(std::string_view text) {
   TextCursor cursor(text, "t");
@@ -163,5 +162,4 @@ TEST(TextCursor, WhatCannotBePrintedIsEscapedAndCut) {
   EXPECT_EQ(quote(std::string(100, 'a')), "\"" + std::string(40, 'a') + "...\"");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -14,8 +14,7 @@
 #include "tessera/io.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::filesystem::path models_folder = TESSERA_SOURCE_DIR "/tools/models";
 
@@ -175,5 +174,4 @@ TEST(TrimmedModels, CrossingCylindersMeet) {
   EXPECT_LE(narrow, 2e-5);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

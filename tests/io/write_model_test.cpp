@@ -6,8 +6,7 @@
 #include "io/written_models.h"
 #include "support/real_files.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::filesystem::path models = TESSERA_SOURCE_DIR "/tools/models";
 
@@ -217,5 +216,4 @@ TEST_F(WriteModel, WhatCannotBeWrittenIsAnErrorAndLeavesWhatWasThere) {
   EXPECT_EQ(content_of(folder_ / "old.bpt"), "before");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

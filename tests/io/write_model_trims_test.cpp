@@ -2,8 +2,7 @@
 
 #include "io/written_models.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A triangle of segments, of which one is a part of a longer one; and a circle of two rational halves.
 std::vector<TrimLoop> loops() {
@@ -97,5 +96,4 @@ TEST(WriteModelTrims, FollowThePatchesOfQuadrics) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

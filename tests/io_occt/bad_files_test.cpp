@@ -11,8 +11,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class BadCadFile : public testing::TestWithParam<const char*> {
  protected:
@@ -102,5 +101,4 @@ TEST_P(BadCadFile, NoPermissionIsSaid) {
   expect_error(path, StatusCode::io_error, ": cannot be opened: Permission denied");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -24,8 +24,7 @@
 #include "tessera/cad.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 double volume_of(const TopoDS_Shape& shape) {
   double sum = 0;
@@ -146,5 +145,4 @@ TEST(ClosedSolids, OfPrimitivesAndTheirDifferences) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

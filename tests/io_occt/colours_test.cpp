@@ -12,8 +12,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The number of the first entity of a kind: 15 of "#15 = ADVANCED_FACE(".
 std::string number_of(const std::string& step, const std::string& kind) {
@@ -116,5 +115,4 @@ TEST(RealColours, EachPartOfAnAssemblyHasItsOwn) {
   GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

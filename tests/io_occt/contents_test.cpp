@@ -16,8 +16,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Lines of an IGES file of one bilinear surface over the square of 4 x 2: z = 0, u from 0 to 2 along x. `ranges` are
 /// the last parameters of the surface.
@@ -122,5 +121,4 @@ TEST(BrepVersions, AreKnownByTheirNumber) {
                  "its version must be 1 to 3, found \"CASCADE Topology V4, (c) Nobody\"");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -17,8 +17,7 @@
 #include "tessera/cad.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Counts = std::map<std::size_t, std::size_t>;  ///< number of uses -> edges that are no points
 
@@ -119,5 +118,4 @@ TEST(EdgeMatching, ClosesRealSolids) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

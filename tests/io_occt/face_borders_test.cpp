@@ -33,8 +33,7 @@
 #include "tessera/cad.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using opencascade::handle;
 
@@ -263,5 +262,4 @@ TEST(FaceBorders, CurvesThatLeaveTheSurfaceWithinTheToleranceFollowItsSide) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -13,8 +13,7 @@
 #include "tess_trim/closed_shape.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The number of the k-th entity of a kind: "#15" of "#15 = ADVANCED_FACE(".
 std::string instances_number_of(const std::string& step, const std::string& kind, int k = 0) {
@@ -196,5 +195,4 @@ TEST(Names, OfLatin1AndGbkBecomeUtf8) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

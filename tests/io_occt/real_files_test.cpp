@@ -9,8 +9,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const Model* find(const std::vector<std::filesystem::path>& files, const char* name, Result<Model>& model) {
   for (const std::filesystem::path& path : files)
@@ -56,5 +55,4 @@ TEST(RealCadFiles, DomainsSmallerThanTheKnotsAreKept) {
   EXPECT_GT(smaller, 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

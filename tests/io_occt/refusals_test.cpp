@@ -23,8 +23,7 @@
 #include "tessera/cad.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A small part that has planes, splines and a hole.
 TopoDS_Shape part() {
@@ -188,5 +187,4 @@ TEST(ReadCad, ManyThreadsReadAtOnce) {
   EXPECT_EQ(good, 24);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

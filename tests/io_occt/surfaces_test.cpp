@@ -36,8 +36,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using opencascade::handle;
 /// The largest distance at `count` random parameters, by the size of the points.
@@ -381,5 +380,4 @@ TEST(ReadCad, IsWhatThisProcessMakesOfTheFile) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

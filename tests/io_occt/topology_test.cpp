@@ -31,8 +31,7 @@
 #include "tessera/cad.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct TopologyCounts {
   std::size_t faces = 0, solids = 0, shells = 0, closed = 0, edges = 0, vertices = 0, degenerate = 0;
@@ -260,5 +259,4 @@ TEST(Topology, SolidsThatShareAFaceAreOneShape) {
   for (const auto& [uses, edges] : topology_counts_of(model).by_uses) EXPECT_EQ(uses, 4u) << edges;
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

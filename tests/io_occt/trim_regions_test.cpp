@@ -29,8 +29,7 @@
 #include "tessera/convert.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct TrimRegionsCounts {
   std::size_t faces = 0, trimmed = 0, points = 0, on = 0, beside = 0, wrong = 0, unread = 0;
@@ -213,5 +212,4 @@ TEST(TrimRegions, OfRealFacesAreThoseOfOpenCascade) {
   for (const int type : {141, 143, 142, 144}) EXPECT_TRUE(types.contains(type)) << type;
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

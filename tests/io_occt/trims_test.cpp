@@ -14,8 +14,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Vec3 start_of(const Curve& curve) { return evaluate_jet(curve, curve.domain().from).position; }
 Vec3 end_of(const Curve& curve) { return evaluate_jet(curve, curve.domain().to).position; }
@@ -143,5 +142,4 @@ TEST(Trims, LoopsOfRealFilesClose) {
   EXPECT_GT(loops, 200u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

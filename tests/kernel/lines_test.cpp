@@ -9,8 +9,7 @@
 #include "base/aligned.h"
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 template <class T>
 struct Kernels {
@@ -82,5 +81,4 @@ TEST(Lines, EveryPieceAndPlace) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

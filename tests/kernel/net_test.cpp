@@ -12,8 +12,7 @@
 #include "base/aligned.h"
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::size_t lanes = kernel::block_lanes;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -212,5 +211,4 @@ TEST(NetKernels, CombineRowsInOrder) {
       }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 #if defined(__aarch64__)
 constexpr const char* foreign = "avx2";
@@ -59,5 +58,4 @@ TEST(SuiteIsaProgram, ExitsByTheChoice) {
   EXPECT_EQ(exit_code(unset + "TESSERA_REQUIRE_ISAS='sse2;" + other + "'", "--isa=" + other), 1);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

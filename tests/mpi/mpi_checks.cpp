@@ -7,8 +7,7 @@
 #include "parts/transport_checks.h"
 #include "tessera/mpi.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Status check_wrong_arguments() {
   const auto is_refused = [](const auto& made) { return made.status().code() == StatusCode::invalid_argument; };
@@ -58,8 +57,7 @@ bool check_all() {
   return all;
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test
 
 int main(int argc, char** argv) {
   const bool is_early = tessera::make_mpi_transport(MPI_COMM_WORLD).ok();

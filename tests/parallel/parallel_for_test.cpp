@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(ParallelFor, CoversEachIndexOnce) {
   for (const std::size_t count : {0u, 1u, 7u, 64u, 1000u})
@@ -66,5 +65,4 @@ TEST(ParallelFor, ProgressRisesToOne) {
   EXPECT_LE(calls, 101);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -18,8 +18,7 @@
 #include "support/scratch_folder.h"
 #include "tessera/transport.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
 
@@ -200,5 +199,4 @@ TEST(Jobs, WrongArgumentsAreNamed) {
                  "file: cannot be made");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

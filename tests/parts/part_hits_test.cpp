@@ -12,8 +12,7 @@
 #include "support/torus.h"
 #include "tessera/part_hits.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Rays at surfaces, at borders and corners, and beside them.
 std::vector<Ray> rays_at(const std::vector<BezierPatch>& patches, double size, std::size_t count) {
@@ -184,5 +183,4 @@ TEST(PartHits, StaleSceneOfOnePartIsAnErrorOfAll) {
   EXPECT_TRUE(status.message().starts_with("part 1: ")) << status.message();
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

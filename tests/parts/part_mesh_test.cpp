@@ -12,8 +12,7 @@
 #include "tess_trim/closed_shape.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Model model_of(const std::vector<BezierPatch>& patches) {
   Model model;
@@ -216,5 +215,4 @@ TEST(PartMesh, RefusesRunsThatAreNotTheWhole) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "support/real_files.h"
 #include "tessera/io.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<std::filesystem::path> real_models() {
   std::vector<std::filesystem::path> paths;
@@ -54,5 +53,4 @@ TEST(RealParts, HaveTheMeshOfTheWhole) {
   EXPECT_GT(models, 40u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "support/errors.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Runs each part as a job on a thread of its own, all in one folder. Returns the error of the lowest part.
 Status run_jobs(std::size_t count, const std::function<Status(Transport&)>& run) {
@@ -145,5 +144,4 @@ TEST(RunParts, NumberOfPartsIsLimited) {
               }).ok());
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

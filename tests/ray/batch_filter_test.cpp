@@ -15,8 +15,7 @@
 #include "support/torus.h"
 #include "tessera/bezier_operations.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Eight by eight fields per patch.
 bool is_cut_out(double patch_u, double patch_v) {
@@ -288,5 +287,4 @@ TEST(InstancesInBatches, WithCutOuts) {
                   [&](const Hit& hit) { return !is_hole(hit.instance, hit.patch_u, hit.patch_v); });
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

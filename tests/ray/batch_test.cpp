@@ -8,8 +8,7 @@
 #include "batch_support.h"
 #include "support/torus.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 template <class T, class U>
 void expect_hits_of_each_ray(const RayScene& scene, const std::vector<Ray>& rays) {
@@ -200,5 +199,4 @@ TEST_F(Batches, OnAnyNumberOfThreads) {
   EXPECT_EQ(one.vectors, many.vectors);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "ray_support.h"
 #include "support/reference_rays.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::size_t chunk = 4096;
 
@@ -149,5 +148,4 @@ TEST(ClosedBody, SeamsAreCrossed) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

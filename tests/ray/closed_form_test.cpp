@@ -4,8 +4,7 @@
 
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(ClosedForm, FlatPatch) {
   const PatchSet set = set_of({polynomial(1, 1, {{0, 0, 0}, {0, 3, 0}, {2, 0, 0}, {2, 3, 0}})});
@@ -138,5 +137,4 @@ TEST(ClosedForm, LightWeightsDoNotMoveTheRaysAway) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

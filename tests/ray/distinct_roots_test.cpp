@@ -8,8 +8,7 @@
 
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A body of four pieces from pole to pole, each with both ends collapsed.
 std::vector<BezierPatch> lunes() {
@@ -112,5 +111,4 @@ TEST(DistinctRoots, ALineOfThemEndsSoon) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "support/solid_rays.h"
 #include "tessera/ray_embree.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 double widest(const RayScene& scene) {
   const std::vector<double> gaps = value_of(scene.edge_gaps());
@@ -373,5 +372,4 @@ TEST(EdgeTubes, BordersThatMoveTogetherNeedNone) {
   EXPECT_NEAR(scene.closest(ray({0.45, 0.45, -1}, {0, 0, 1})).t, 1, 1e-12);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "ray/lattice_body.h"
 #include "support/ray_classes.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct Disagreements {
   std::size_t lost = 0, dark = 0, moved = 0, hits = 0;
@@ -71,5 +70,4 @@ TEST(EmbreeSeams, FarFromZero) {
   EXPECT_EQ(found.lost + found.dark + found.moved, 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

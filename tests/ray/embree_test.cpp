@@ -12,8 +12,7 @@
 #include "ray_support.h"
 #include "support/torus.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<Ray> rays_at_torus(std::size_t count) {
   Random random(51);
@@ -347,5 +346,4 @@ TEST(EmbreeGeometry, RefusalsSayWhy) {
   EXPECT_EQ(attach(exact, world.scene.get()).status().code(), StatusCode::stale);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 RaySceneOptions exact_options() {
   RaySceneOptions options;
@@ -224,5 +223,4 @@ TEST(ExactMode, AnswersDoNotDependOnThreadsOrBatches) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

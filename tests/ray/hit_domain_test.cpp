@@ -7,8 +7,7 @@
 #include "support/seam_rays.h"
 #include "support/solid_rays.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<Ray> rays_at_borders(const std::vector<BezierPatch>& patches, const PatchSet& set, std::size_t count,
                                  Random& random) {
@@ -91,5 +90,4 @@ TEST(HitDomain, EdgesOfShapes) {
   EXPECT_EQ(count_refused(scene, set, closest(scene, rays)), 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "ray_support.h"
 #include "support/torus.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 BezierPatch mapped(const BezierPatch& patch, const Affine& map) {
   std::vector<Vec3> points;
@@ -210,5 +209,4 @@ TEST(Instances, RefusalsSayWhy) {
   EXPECT_EQ(refusal(&exact, Affine::translated({0, 1e308 * 10, 0})), StatusCode::non_finite);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/seam_rays.h"
 #include "support/solid_rays.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class Interval : public testing::Test {
  protected:
@@ -196,5 +195,4 @@ TEST_F(Interval, BeginsAtTheHit) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

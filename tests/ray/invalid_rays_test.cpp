@@ -5,8 +5,7 @@
 #include "ray_support.h"
 #include "support/torus.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -160,5 +159,4 @@ TEST(InvalidRays, CancelledListsAreEmpty) {
   EXPECT_TRUE(lists.first.empty());
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

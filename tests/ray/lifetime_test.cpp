@@ -4,8 +4,7 @@
 
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(Lifetime, StaleUntilRefit) {
   const std::vector<Vec3> low{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}},
@@ -115,5 +114,4 @@ static_assert(can_make<PatchSet&> && can_make<const PatchSet&> && can_make<Patch
 static_assert(!can_make<PatchSet> && !can_make<PatchSet&, Mesh> && !can_make<PatchSet, Mesh&>,
               "a scene refers to what it is made of");
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

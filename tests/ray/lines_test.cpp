@@ -5,8 +5,7 @@
 #include "ray/line/ray_segment.h"
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 void lines_expect_same(const Vec3& a, const Vec3& b) {
   EXPECT_EQ(a.x, b.x);
@@ -95,5 +94,4 @@ TEST(Lines, OfATurnAreThoseOfEachRay) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -21,8 +21,7 @@
 #include "support/ray_proof.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::Random;
 using test::uniform;
@@ -233,5 +232,4 @@ TEST(LocalLeaf, MemoryOfAPiece) {
   }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -5,8 +5,7 @@
 #include "support/torus.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh certified_mesh(const PatchSet& set, double tolerance, bool quads) {
   const auto plan = value_of(Tessellation::make(set, {.tolerance = tolerance, .quads = quads}));
@@ -125,5 +124,4 @@ TEST(MeshScene, SaysWhatIsWrongWithAMesh) {
       "half a triangle", [](Mesh& m) { m.indices.pop_back(); }, 0);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "tessera/model.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 PatchSet torus_set() {
   Model model;
@@ -104,5 +103,4 @@ TEST(Packets, OfAnyNumberMeetWhatEachRayMeets) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

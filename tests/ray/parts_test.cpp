@@ -7,8 +7,7 @@
 #include "support/seam_rays.h"
 #include "support/torus.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct Part {
   std::vector<std::uint32_t> whole;  ///< index in the whole, by index in the part
@@ -197,5 +196,4 @@ TEST(Parts, BadOptions) {
   EXPECT_EQ(none.closest(ray({0, 0, 3}, {0, 0, -1})).kind, HitKind::miss);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "tessera/convert.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Json = nlohmann::json;
 
@@ -116,5 +115,4 @@ TEST(PeerRays, Sisl) {
   EXPECT_GT(lines, 100u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

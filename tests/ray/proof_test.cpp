@@ -7,8 +7,7 @@
 #include "support/ray_classes.h"
 #include "support/ray_proof.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 RayScene proof_exact_scene(const PatchSet& set, int pieces = 2) {
   RaySceneOptions options;
@@ -159,5 +158,4 @@ TEST(ExactMode, LinesCrossClosedBodiesEvenly) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

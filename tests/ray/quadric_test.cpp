@@ -7,8 +7,7 @@
 #include "tessera/convert.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The nearest hit of the piece in front of the ray, and whether facets must find it, which they must if every hit is
 /// away from the piece's borders and from grazing, and no two are close together.
@@ -65,5 +64,4 @@ TEST(QuadricRays, PatchesAreMetWhereTheClosedFormSays) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "support/torus.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 RayScene editable_scene(const PatchSet& set, int rebuild_after = 0) {
   return value_of(RayScene::make(set, {.editable = true, .rebuild_after = rebuild_after}));
@@ -228,5 +227,4 @@ TEST(Refit, ThreadsBetweenEdits) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

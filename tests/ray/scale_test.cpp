@@ -4,8 +4,7 @@
 
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct Place {
   const char* name;
@@ -74,5 +73,4 @@ TEST(Scales, BeyondFloatIsAnError) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "tessera/convert.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 PatchSet unit_sphere() { return set_of(value_of(to_bezier(value_of(make_nurbs_sphere({}, 1)))).take_patches()); }
 
@@ -194,5 +193,4 @@ TEST(Seams, HeavyWeightsBesideBorders) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "ray_support.h"
 #include "support/torus.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Ray leaving(const RayScene& scene, const Vec3& from, const Vec3& direction) {
   Ray out = ray(from, direction);
@@ -254,5 +253,4 @@ TEST(HitFacts, TouchingAndCost) {
   EXPECT_GT(costly, 100u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 
 #include "ray_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 bool same_bits(const Vec3& a, const Vec3& b) {
@@ -69,5 +68,4 @@ TEST(Threads, ProgressAndCancellation) {
   EXPECT_EQ(scene.closest(rays, hits, execution).code(), StatusCode::cancelled);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "ray_support.h"
 #include "support/trimmed_proof.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TrimmedTally tally_of(const TrimmedCase& one, int rays, std::uint64_t seed) {
   Random random(seed);
@@ -93,5 +92,4 @@ TEST(TrimmedProof, ARootBeyondABorderIsUnsureBesideALoop) {
   EXPECT_LE(clean, 3);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "tessera/trim_region.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The hits of all kinds of queries of a scene, beside those that a referee keeps of the whole surface's.
 void expect_kept(const Face& face, const RaySceneOptions& options, const std::vector<Ray>& rays) {
@@ -359,5 +358,4 @@ TEST(TrimmedScene, InstancesAndRefitsKeepTheLoops) {
   EXPECT_EQ(scene.closest(ray({0.5, 1.5, 4}, {0, 0, -1})).kind, HitKind::miss);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

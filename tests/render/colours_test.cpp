@@ -6,8 +6,7 @@
 
 #include <algorithm>
 
-namespace tessera::render {
-namespace {
+namespace tessera::render { namespace {
 
 Image blank(int width, int height) {
   return {width, height, std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width * height), 255)};
@@ -41,5 +40,4 @@ TEST(Colours, SmallPicturesHaveNoBar) {
   EXPECT_EQ(image.rgb, blank(30, 20).rgb);
 }
 
-}  // namespace
-}  // namespace tessera::render
+}}  // namespace tessera::render

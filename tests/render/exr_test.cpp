@@ -14,8 +14,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/io.h"
 
-namespace tessera::render {
-namespace {
+namespace tessera::render { namespace {
 
 using test::value_of;
 
@@ -143,5 +142,4 @@ TEST(ExrFiles, WhatCannotBeWritten) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-}  // namespace
-}  // namespace tessera::render
+}}  // namespace tessera::render

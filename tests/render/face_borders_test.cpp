@@ -9,8 +9,7 @@
 #include <set>
 #include <vector>
 
-namespace tessera::render {
-namespace {
+namespace tessera::render { namespace {
 
 /// The square [0,1]^2 of two triangles that share no vertices, with the diagonal from (0,0) to (1,1).
 Mesh square_face() {
@@ -75,5 +74,4 @@ TEST(FaceBorders, AreNotAlongSeams) {
   EXPECT_EQ(face_borders(Mesh(), {}).triangle_count(), 0u);
 }
 
-}  // namespace
-}  // namespace tessera::render
+}}  // namespace tessera::render

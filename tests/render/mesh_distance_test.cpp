@@ -10,8 +10,7 @@
 #include "support/random_patches.h"
 #include "support/triangle_distance.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh random_mesh(Random& random, std::size_t triangles) {
   Mesh mesh;
@@ -64,5 +63,4 @@ TEST(MeshDistance, RefusesWhatIsNoMesh) {
   EXPECT_EQ(render::MeshDistance::make(mesh).status().code(), StatusCode::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

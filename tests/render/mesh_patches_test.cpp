@@ -11,8 +11,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::render {
-namespace {
+namespace tessera::render { namespace {
 
 using test::value_of;
 
@@ -142,5 +141,4 @@ TEST(MeshPatches, MeshesThatCannotBeDrawn) {
   EXPECT_EQ(patches_of(mesh).pack().status().code(), StatusCode::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tessera::render
+}}  // namespace tessera::render

@@ -10,8 +10,7 @@
 
 #include "render/render.h"
 
-namespace tessera::render {
-namespace {
+namespace tessera::render { namespace {
 
 namespace fs = std::filesystem;
 
@@ -85,5 +84,4 @@ TEST_F(PngFiles, ImagesThatDoNotFitTheirSize) {
   EXPECT_EQ(files(), 0u);
 }
 
-}  // namespace
-}  // namespace tessera::render
+}}  // namespace tessera::render

@@ -13,8 +13,7 @@
 
 #include "support/synthetic_sets.h"
 
-namespace tessera::render {
-namespace {
+namespace tessera::render { namespace {
 
 using test::placed;
 using test::value_of;
@@ -261,5 +260,4 @@ TEST(Render, ProgressAndCancellation) {
   EXPECT_EQ(render(ball.scene, ball.set.box(), small(), execution).status().code(), StatusCode::cancelled);
 }
 
-}  // namespace
-}  // namespace tessera::render
+}}  // namespace tessera::render

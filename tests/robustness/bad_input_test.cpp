@@ -11,8 +11,7 @@
 #include "robustness/bad_input.h"
 #include "support/scratch_folder.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 #ifdef TESSERA_HAS_RAY
 constexpr auto rays = fill_rays, batches = fill_batches;
@@ -134,5 +133,4 @@ TEST(BadInput, TheDocument) {
   EXPECT_EQ(headings, expected);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

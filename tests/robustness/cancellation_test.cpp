@@ -7,8 +7,7 @@
 #include "robustness/scene.h"
 #include "robustness/workers.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Runs call(execution) repeatedly, cancelled at one share of its work after the other; runs look(status) after each.
 template <class Call, class Look>
@@ -161,5 +160,4 @@ TEST_F(Cancelled, Rays) {
 }
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

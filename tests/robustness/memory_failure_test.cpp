@@ -29,8 +29,7 @@
 #include "tessera/io.h"
 #endif
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(MemoryFails, WhereCurvesAndPatchesAreMade) {
   Random random(1);
@@ -355,5 +354,4 @@ TEST(MemoryFails, WhereFormatsAndTextsAreChecked) {
 }
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

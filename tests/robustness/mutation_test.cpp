@@ -15,8 +15,7 @@
 #include "tessera/ray_scene.h"
 #endif
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// One mutation, from a surface to its mesh and its hits.
 class Case {
@@ -214,5 +213,4 @@ TEST(Mutations, NothingCrashesAndNothingIsNaN) {
   EXPECT_GT(ends["all done"], count / 5);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 AllBuffers<float> grid_of(const PatchSet& set) {
   const std::vector<double> t = uniform_parameters(6);
@@ -204,5 +203,4 @@ INSTANTIATE_TEST_SUITE_P(
                       Setting{"upward_and_flushed", FE_UPWARD, flush_to_zero | subnormals_are_zero}),
     [](const auto& setting) { return setting.param.name; });
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/borders.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Checks the most memory that call() holds at a time besides its result, divided by `count`: at most `bytes`; and the
 /// memory of the result: at most `kept_bytes`. The first call may take memory that remains: threads' own, or tables.
@@ -103,5 +102,4 @@ TEST_F(PeakMemory, Rays) {
 }
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "robustness/scene.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Runs call(execution), which must succeed, and checks its reports.
 template <class Call>
@@ -114,5 +113,4 @@ TEST_F(Progress, Rays) {
 }
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

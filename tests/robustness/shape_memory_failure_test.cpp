@@ -10,8 +10,7 @@
 #include "tessera/io.h"
 #endif
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using enum StatusCode;
 
@@ -82,5 +81,4 @@ TEST(MemoryFails, WhereAssembliesAreWritten) {
       "flatten, too far", [&] { return flatten(assembly); }, non_finite);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "tessera/evaluate.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(Workers, AnyNumberOfThemGivesTheSameBytes) {
   Bits expected;
@@ -159,5 +158,4 @@ TEST(CallersThreads, MayShareConstObjects) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "robustness/scene.h"
 #include "support/allocations.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The first calls may allocate, and so may a call in which a thread takes part for the first time.
 template <class Call>
@@ -107,5 +106,4 @@ TEST_F(WarmPath, BatchesOfRays) {
 }
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

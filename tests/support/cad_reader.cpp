@@ -2,10 +2,8 @@
 
 #include <cstdlib>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 [[maybe_unused]] const int named = ::setenv("TESSERA_CAD_READER", TESSERA_CAD_READER_FILE, 0);
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 #include "support/grids.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(SuiteIsa, RunsGridsAndMeshes) {
   const char* const forced = std::getenv("TESSERA_ISA");
@@ -30,5 +29,4 @@ TEST(SuiteIsa, RunsGridsAndMeshes) {
   EXPECT_EQ(name(report.isa), wanted);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// f_i(t) from M itself, and the size to which its rounding is relative.
 Real by_powers(const BasisMatrix& basis, int i, Real t, Real& size) {
@@ -194,5 +193,4 @@ TEST(BasisMatrix, RefusesWhatItCannotHold) {
                  "too large");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/coons_patch.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::vector<double> smoothstep5_first{1, 0, 0, -10, 15, -6}, smoothstep5_second{0, 0, 0, 10, -15, 6};
 
@@ -105,5 +104,4 @@ TEST(Blend, RefusesCallablesThatBreakAConditionAndSaysWhere) {
   expect_refused(Blend::callable(thrower, line), invalid, -1, "f1 at t = 0.515625 threw: no blend");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

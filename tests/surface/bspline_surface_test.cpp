@@ -8,8 +8,7 @@
 #include "support/random_splines.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 const std::vector<KnotStyle> styles{{0}, {2}, {3, true, true}, {2, false, false}, {2, false, true}};
 
@@ -164,5 +163,4 @@ TEST(BSplineSurface, BadInputIsNamed) {
             StatusCode::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

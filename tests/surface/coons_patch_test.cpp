@@ -10,8 +10,7 @@
 #include "support/random_hermite.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Borders of (u + v, u^2 - v^2, 1 - u + v), exact ones and functions.
 std::vector<CoonsBorders> saddle_borders() {
@@ -275,5 +274,4 @@ TEST(CoonsPatch, Refuses) {
   expect_refused(CoonsPatch::make({huge, huge, huge, other}), invalid, 1, "r(u0, v1)");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

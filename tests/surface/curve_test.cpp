@@ -8,8 +8,7 @@
 #include "support/ulp.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(Curve, EqualsTheDefinition) {
   Random random(1);
@@ -95,5 +94,4 @@ TEST(Curve, BadInputIsNamed) {
   EXPECT_NE(Curve::b_spline(2, holes, knots).status().message().find("control point [2]"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using Stencil = DifferenceStencil;
 
@@ -60,5 +59,4 @@ TEST(Differences, KeepTheStatedBounds) {
     }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

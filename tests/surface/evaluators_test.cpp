@@ -6,8 +6,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Evaluator = Vec3 (*)(const BezierPatch&, double, double);
 constexpr Evaluator evaluators[] = {
@@ -231,5 +230,4 @@ TEST(Evaluators, FiniteInputGivesNoNaN) {
       }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

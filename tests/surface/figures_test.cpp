@@ -7,8 +7,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(Figures, BicubicBezier) {
   const BezierPatch patch = polynomial(3, 3, lecture_points());
@@ -77,5 +76,4 @@ TEST(Figures, SPieceHasItsMiddleOnTheChord) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 #include "support/random_hermite.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 HermiteNetwork random_network(Random& random, std::size_t count_u, std::size_t count_v) {
   return value_of(HermiteNetwork::from_factors(count_u, count_v, random_nodes(random, count_u, count_v),
@@ -298,5 +297,4 @@ TEST(HermiteNetwork, RefusesBadKnots) {
                  "Bessel twists need at least three nodes along v, found 2");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 #include "support/random_hermite.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Corners = HermitePatch::OpenCorners;
 
@@ -255,5 +254,4 @@ TEST(HermitePatch, FromBezierOfLowDegreesOnly) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

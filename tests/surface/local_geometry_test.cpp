@@ -7,8 +7,7 @@
 #include "support/quadrics.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double local_geometry_nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -242,5 +241,4 @@ TEST(Net, RefusesBadOptions) {
   EXPECT_EQ(dot->undefined_samples, 17 * 17);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "support/random_splines.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr int steps = 60;
 
@@ -118,5 +117,4 @@ TEST(NurbsSurface, BadInputIsNamed) {
   EXPECT_EQ(make_nurbs_circle({{nan, 0, 0}, {0, 0, 2}, {1, 0, 0}}, 1).status().code(), StatusCode::non_finite);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "support/ulp.h"
 #include "surface/callable/border_curve.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Vec3 helix(double t) { return {std::cos(t), std::sin(t), 0.5 * t}; }
 CurveJet helix_jet(double t) { return {helix(t), {-std::sin(t), std::cos(t), 0.5}, {-std::cos(t), -std::sin(t), 0}}; }
@@ -119,5 +118,4 @@ TEST(BorderCurve, BoundsOfCurvesHold) {
   EXPECT_NEAR(derivative_bound(BorderCurve(cubic), {0, 1}, 2), 10, 1e-10);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

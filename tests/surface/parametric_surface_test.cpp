@@ -10,8 +10,7 @@
 #include "support/synthetic_sets.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A function that provides only positions.
 template <class F>
@@ -256,5 +255,4 @@ TEST(ParametricCurve, FromOneExpression) {
   EXPECT_NEAR(curve.derivative_bound({0, 0.01}, 12), 1, 0.1);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

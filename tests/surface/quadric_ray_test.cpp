@@ -5,8 +5,7 @@
 #include "support/quadrics.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double quadric_ray_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double quadric_ray_infinity = std::numeric_limits<double>::infinity();
@@ -124,5 +123,4 @@ TEST(QuadricRay, BadRaysHitNothing) {
   EXPECT_EQ(intersect(sphere, {}, {1e300, 0, 0}).count, 2);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "support/quadrics.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double quadric_nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double quadric_infinity = std::numeric_limits<double>::infinity();
@@ -213,5 +212,4 @@ TEST(QuadricPiece, RefusesBadRanges) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -10,8 +10,7 @@
 #include "support/errors.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 RuledSurface ruled(const BorderCurve& first, const BorderCurve& second, const Interval& across = {},
                    Direction straight = Direction::v) {
@@ -107,5 +106,4 @@ TEST(RuledSurface, Refuses) {
                  "the first curve: the curve at t = 0.5 threw: hole");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// d^order/dt^order of t^k.
 Real power_derivative(int k, Real t, int order) {
@@ -116,5 +115,4 @@ TEST(TensorPatch, RefusesWhatDoesNotFit) {
                  "geometry element [2][1] is (0, nan, 0), its coordinates must be finite");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 #include "support/reference.h"
 #include "support/ulp.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr Vec3 pole{0.25, -0.5, 1};
 
@@ -181,5 +180,4 @@ TEST(UnitNormal, TwoCollapsedEdgesAtACorner) {
   EXPECT_EQ(unit_normal(patch, 1, 1).kind, NormalKind::regular);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

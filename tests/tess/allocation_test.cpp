@@ -9,8 +9,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(TessellationAllocation, NoneAfterTheFirstRuns) {
   const PatchSet set = set_of(mixed_patches(1, 400));
@@ -100,5 +99,4 @@ TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -12,8 +12,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
@@ -220,5 +219,4 @@ TEST(NormalNet, PointsAlongTheNormal) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

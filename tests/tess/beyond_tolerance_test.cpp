@@ -4,8 +4,7 @@
 
 #include "tess/far_parts.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Expects a plan whose patches from `first` on are beyond the tolerance, and no others.
 void expect_beyond(const PatchSet& set, const Tessellation& plan, std::size_t first, double tolerance) {
@@ -97,5 +96,4 @@ TEST(BeyondTolerance, UpdatesPlanAsFreshPlansDo) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

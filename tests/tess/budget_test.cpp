@@ -6,8 +6,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A bilinear patch over the unit square at (x, y), by its heights at (x, y), (x, y + 1), (x + 1, y) and
 /// (x + 1, y + 1).
@@ -63,5 +62,4 @@ TEST(Budgets, NoToleranceOfTheStepsBelowSuffices) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

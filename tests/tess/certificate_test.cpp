@@ -10,8 +10,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The reference itself: a paraboloid's chord error is known.
 TEST(TrueDistance, OfAParaboloid) {
@@ -79,5 +78,4 @@ TEST(Certificate, HoldsAcrossTheMiddleOfEvenRates) {
   EXPECT_GT(straddling, 30u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<PatchSet> sets() {
   std::vector<PatchSet> all;
@@ -213,5 +212,4 @@ TEST(ChordBlocks, TheSameBitsOnEveryInstructionSet) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

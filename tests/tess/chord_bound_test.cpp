@@ -11,8 +11,7 @@
 #include "support/random_patches.h"
 #include "support/triangle_distance.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct Box {
   double u, v, h, k;
@@ -172,5 +171,4 @@ TEST(ChordBound, RatesBeyondTheCapAreRefused) {
   EXPECT_TRUE(bound.cheapest(bound.distance({8, 8}), 8));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

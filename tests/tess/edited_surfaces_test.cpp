@@ -11,8 +11,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/model.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 BSplineSurface with_points(const BSplineSurface& of, const std::vector<Vec3>& points) {
   if (of.is_rational())
@@ -185,5 +184,4 @@ TEST(EditedSurfaces, NothingIsAllocatedAfterTheFirst) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "tess/proven_mesh_of.h"
 #include "tess/random_edits.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::uint64_t edits_of_a_quick_run = 600;
 
@@ -220,5 +219,4 @@ TEST(EditedTopology, BoundsAndNeighboursHold) {
   EXPECT_GT(counts.borders, wanted / 4);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

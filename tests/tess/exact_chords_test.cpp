@@ -16,8 +16,7 @@
 #include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::size_t lanes = PatchSet::lanes;
 
@@ -328,5 +327,4 @@ TEST(ExactChords, HardPatchesAreBoundedOrRefused) {
   EXPECT_GT(planned, 100u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

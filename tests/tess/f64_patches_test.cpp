@@ -6,8 +6,7 @@
 
 #include "tess/far_parts.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A tolerance for which bicubic patches beyond about 20 from the origin need doubles.
 constexpr double tolerance = 1e-4;
@@ -193,5 +192,4 @@ TEST(F64Patches, OfPixelsAreThoseInThePicture) {
   expect_closed(mesh_of(set, plan));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -3,8 +3,7 @@
 #include "base/impl_access.h"
 #include "tess/far_parts.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The mesh at its positions in double, relative to a triangle's own place.
 void expect_f64_bounds(const PatchSet& set, const Mesh& mesh, std::span<const float> bounds, std::size_t count = 200) {
@@ -190,5 +189,4 @@ TEST(MeshesWithoutVertices, AreAllocatedWrittenAndFollowed) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 #include "base/impl_access.h"
 #include "support/edges_of_set.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(FarParts, AVertexIsWithinItsRounding) {
   Random random(3);
@@ -294,5 +293,4 @@ TEST(FarParts, VerticesThatTurnIntoFloatsAreAnotherTopology) {
   EXPECT_FALSE(is_f64(plan, 1));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Tessellation planned(const PatchSet& set, double relative, bool fewest) {
   return good(Tessellation::make(set, {.tolerance = relative, .relative = true, .fewest = fewest}));
@@ -290,5 +289,4 @@ TEST(Fewest, UpdatesStateTheirBoundsTheSameWay) {
   EXPECT_LE(plan.bound(), plan.tolerance() * (1 + 1e-6));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/followed_mesh.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(FollowedMesh, AnUpdateMakesUpForOneThatFailed) {
   TessellationOptions options{.tolerance = 0.003};
@@ -96,5 +95,4 @@ TEST(FollowedMesh, ViewsOfAnotherTopologyAreRefused) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

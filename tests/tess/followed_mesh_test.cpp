@@ -14,8 +14,7 @@
 #include "support/true_distance.h"
 #include "tess/followed_mesh.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Whether a mesh is a disc whose patches meet without cracks, by Euler's formula.
 bool is_disc(const Mesh& mesh) {
@@ -306,5 +305,4 @@ TEST(FollowedMesh, NothingIsAllocatedAfterTheFirst) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

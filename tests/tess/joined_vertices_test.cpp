@@ -12,8 +12,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/convert.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Tessellation plan_of(const PatchSet& set, const TessellationOptions& options) {
   return good(Tessellation::make(set, options));
@@ -298,5 +297,4 @@ TEST(Quads, CellsAreQuadsAndTheRestIsStrips) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A quarter of a cone or a cylinder with a wide or a narrow end.
 BezierPatch quarter_cone(Random& random, Vec3 centre, double length) {
@@ -118,5 +117,4 @@ TEST(LocalDecisions, SegmentsOfAnglesAndPixelsDependOnNoneEither) {
   EXPECT_EQ(count, 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/tessellation.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::value_of;
 
@@ -202,5 +201,4 @@ TEST(MeshAssemblies, ModelsGiveTheirInstances) {
   EXPECT_EQ(instances_of(model).status().message(), "instance 0: it is of shape 2, there are 2");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

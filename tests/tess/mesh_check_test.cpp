@@ -4,8 +4,7 @@
 
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh tetrahedron() {
   Mesh mesh;
@@ -206,5 +205,4 @@ TEST(MeshCheck, TorusGridIsClosed) {
   EXPECT_EQ(report.open_edges, 3u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

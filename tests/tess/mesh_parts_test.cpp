@@ -10,8 +10,7 @@
 #include "tessera/tessellation.h"
 #include "tessera/topology.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::value_of;
 
@@ -131,5 +130,4 @@ TEST(MeshParts, FacesOfAShapeHaveTheirNamesAndColours) {
   EXPECT_EQ(parts_by_face(mesh_of(set), set, shape).status().message(), "triangle 24 is of face 3, there are 3");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -10,8 +10,7 @@
 #include "tess/proven_mesh_of.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Tessellation mesh_tables_plan_of(const PatchSet& set, double tolerance) {
   return good(Tessellation::make(set, {.tolerance = tolerance}));
@@ -76,5 +75,4 @@ TEST(MeshTables, MeshesAreTheSameWhateverCameBefore) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "tess/shaken.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A flat rectangle.
 BezierPatch rectangle(const Vec3& corner, const Vec3& along_u, const Vec3& along_v) {
@@ -124,5 +123,4 @@ TEST(Weld, DependsOnTheBordersAlone) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -14,8 +14,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh patch_writer_mesh_of(const PatchSet& set, double tolerance, std::optional<Isa> isa = {},
                           Stores stores = Stores::automatic) {
@@ -191,5 +190,4 @@ TEST(Division, ParametersOfAVertexAreThoseInOrder) {
   });
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -12,8 +12,7 @@
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A camera of this test's own: a pinhole whose picture plane is spanned by two directions.
 class Pinhole {
@@ -277,5 +276,4 @@ TEST(Pixels, WrongOnesAreRefused) {
       << rough.status().message();
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -2,8 +2,7 @@
 
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A random patch with any set of edges collapsed: bit 0 u = 0, bit 1 u = 1, bit 2 v = 0, bit 3 v = 1.
 BezierPatch with_collapsed_edges(Random& random, int m, int n, int edges, bool with_weights) {
@@ -131,5 +130,4 @@ TEST(Poles, SphereIsClosedAndConsistent) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -13,8 +13,7 @@
 #include "support/triangle_distance.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Tessellation proven_mesh_plan_of(const PatchSet& set, double tolerance) {
   return good(Tessellation::make(set, {.tolerance = tolerance}));
@@ -203,5 +202,4 @@ TEST(ProvenMesh, WritesNothingIntoShortViews) {
   EXPECT_TRUE(std::all_of(mesh.positions.begin(), mesh.positions.end(), [](float x) { return x == 0; }));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

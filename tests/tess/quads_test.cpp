@@ -9,8 +9,7 @@
 #include "support/true_distance.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh quads_of(const PatchSet& set, const Tessellation& plan, const Execution& execution = {}) {
   Mesh mesh = good(plan.allocate());
@@ -251,5 +250,4 @@ TEST(Quads, AreSplitPartByPart) {
   EXPECT_TRUE(good(split_quads(mesh)).patches.empty());
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "support/random_patches.h"
 #include "tess/edges/edge_needs.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr int parts = Segments::parts;
 
@@ -128,5 +127,4 @@ TEST(SegmentLaw, OnePatchGetsWhatItAsksFor) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -2,8 +2,7 @@
 
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Two patches of degrees (m, n) and (k, n) whose borders u = 1 and u = 0 are one net.
 struct Neighbours {
@@ -75,5 +74,4 @@ TEST(SharedBorders, ClosedBodyFarFromZero) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

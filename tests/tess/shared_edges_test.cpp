@@ -12,8 +12,7 @@
 #include "support/points.h"
 #include "support/synthetic_sets.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using Bits = std::vector<std::uint32_t>;
 
@@ -136,5 +135,4 @@ TEST(SharedEdges, MatchedBordersDifferWhereABitDoesOnEveryInstructionSet) {
     }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct StitchedPatchPlace {
   double u, v;
@@ -214,5 +213,4 @@ TEST(StitchedPatch, ACurveHasNoTriangles) {
   EXPECT_EQ(untouched, 5u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using ::testing::HasSubstr;
 
@@ -203,5 +202,4 @@ TEST(TessellationErrors, Cancelled) {
   EXPECT_EQ(plan.run(set, mesh.views(), execution).code(), StatusCode::cancelled);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "support/ulp.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 std::vector<BezierPatch> random_patches(std::uint64_t seed, int count) {
   Random random(seed);
@@ -204,5 +203,4 @@ TEST(Tessellation, TellsProgressAndWhatItDid) {
   EXPECT_EQ(report.isa, good(default_isa()));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/followed_mesh.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Expects that each surface lies within its bound of the mesh.
 void expect_within_bounds(const PatchSet& set, const Tessellation& plan, const Mesh& mesh, const std::string& what) {
@@ -117,5 +116,4 @@ TEST(VanishingPatch, EditsLeaveNothingBehind) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

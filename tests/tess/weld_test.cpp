@@ -12,8 +12,7 @@
 #include "tessera/bezier_operations.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh welded_mesh(const PatchSet& set, double tolerance, double weld) {
   return mesh_of(set, good(Tessellation::make(set, {.tolerance = tolerance, .weld = weld})));
@@ -222,5 +221,4 @@ TEST(SideCurve, TheDistanceBoundIsNotExceeded) {
   EXPECT_GE(tightest, 0.9);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "support/synthetic_sets.h"
 #include "tess/tessellate_support.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The largest angle between two normals of the surface over one triangle, by the reference evaluator.
 double largest_turn(const BezierPatch& patch, const Mesh& mesh) {
@@ -102,5 +101,4 @@ TEST(WeldedAngle, NoisyPolesCostNoTriangles) {
               0.05 * double(of_exact.capacity().triangles));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

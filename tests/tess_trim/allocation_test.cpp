@@ -4,8 +4,7 @@
 #include "tess/trimmed/cut_cells.h"
 #include "tess_trim/plane_reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(TrimmedAllocation, NoneOnRepetition) {
   std::vector<double> lines;
@@ -29,5 +28,4 @@ TEST(TrimmedAllocation, NoneOnRepetition) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

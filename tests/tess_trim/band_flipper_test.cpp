@@ -7,8 +7,7 @@
 
 #include "support/synthetic_sets.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(BandFlipper, StopsWhenCancelled) {
   // A ridge along u = 1/2: the diagonal from (0, 1/2) to (1, 1/2) folds it, the other one follows it.
@@ -30,5 +29,4 @@ TEST(BandFlipper, StopsWhenCancelled) {
   EXPECT_EQ(flipped(&cancel), folded);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 
 #include "tess_trim/plane_reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Triangles are large if they are wider than 1 / a or higher than 1 / b.
 struct Limits {
@@ -132,5 +131,4 @@ TEST(BandRefiner, StopsWhenCancelled) {
   EXPECT_EQ(triangles.size(), 256u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

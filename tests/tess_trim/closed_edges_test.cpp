@@ -11,8 +11,7 @@
 #include "base/impl_access.h"
 #include "tess_trim/closed_shape.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(ClosedEdges, AreNotMadeOnceTheCallIsCancelled) {
   const PatchSet set = value_of(make_patch_set(joined(cube(), 1e-6)));
@@ -108,5 +107,4 @@ TEST(ClosedEdges, TrianglesAtPolesTakeTheVerticesOfTheirNeighbours) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -3,8 +3,7 @@
 #include "support/quadrics.h"
 #include "tess_trim/closed_shape.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr double pi = std::numbers::pi;
 
@@ -44,5 +43,4 @@ TEST(ClosedQuadrics, MeetOthersWithoutGaps) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "tess_trim/closed_shape.h"
 #include "tessera/topology.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 void expect_closed(const ShapeMesh& made, const char* what) {
   EXPECT_TRUE(made.report.closed()) << what << ": " << made.report.open_edges << " open edges, "
@@ -360,5 +359,4 @@ TEST(ClosedShape, AnglesPixelsDoublesAndQuadsAreClosed) {
   EXPECT_EQ(quads.report.t_junctions, 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

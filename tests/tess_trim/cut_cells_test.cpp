@@ -4,8 +4,7 @@
 
 #include "tess_trim/plane_reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// A grid of integers, and loops in it.
 struct Loops {
@@ -339,5 +338,4 @@ TEST(CutCells, OfCrossingLoopsAreRefused) {
   EXPECT_TRUE(cut(loops).band.empty());
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 BSplineSurface bezier_surface(int degree_u, int degree_v, const std::vector<Vec3>& points) {
   const auto knots = [](int degree) {
@@ -161,5 +160,4 @@ TEST(CutPatches, StopAtTheLimitOfTriangles) {
   EXPECT_EQ(plan.status().code(), StatusCode::invalid_argument);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

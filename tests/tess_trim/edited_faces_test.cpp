@@ -10,8 +10,7 @@
 #include "tess_trim/closed_shape.h"
 #include "tess_trim/trimmed_face.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Mesh written(const PatchSet& set, const Tessellation& plan) {
   Mesh mesh = value_of(plan.allocate());
@@ -138,5 +137,4 @@ TEST(EditedFaces, UpdatesKeepBoundsAndAreLikeNewPlans) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -2,8 +2,7 @@
 
 #include "tess_trim/closed_shape.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// Moves the start of a loop's second curve along it, so that a gap lies on a side of the rectangle.
 TrimLoop with_gap_on_side(const TrimLoop& loop, double gap) {
@@ -47,5 +46,4 @@ TEST(OpenEdges, PartsOfSharedSidesAreCounted) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -11,8 +11,7 @@
 #include "tess/trimmed/speed_bound.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The arc of the unit circle from one angle to another, as a rational parabola.
 TrimPiece arc(double from, double to) {
@@ -84,5 +83,4 @@ TEST(SpeedBound, OfParallelogramsIsTheirLengths) {
   EXPECT_NEAR(skewed.moved(1, 1), length(Vec3{6, 4, 0}), 1e-9);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 
 #include "tess_trim/plane_reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 struct Triangulated {
   bool ok;
@@ -215,5 +214,4 @@ TEST(PolygonTriangles, CheckerFindsPlantedFaults) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

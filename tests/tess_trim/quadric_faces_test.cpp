@@ -8,8 +8,7 @@
 #include "tessera/trim_region.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 ModelSurface trimmed(const QuadricPiece& part, std::vector<TrimLoop> loops) {
   return {.name = std::string("face"), .surface = part, .trims = std::move(loops)};
@@ -136,5 +135,4 @@ TEST(QuadricFaces, HaveTheAreaOfTheirFormulas) {
               std::sqrt(2) * 1.1 * std::numbers::pi * 0.9 * 0.4, slack);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

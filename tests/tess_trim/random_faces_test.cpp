@@ -13,8 +13,7 @@
 #include "tess_trim/closed_shape.h"
 #include "tess_trim/trimmed_face.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 constexpr std::uint64_t max_triangles = 60000;
 
@@ -210,5 +209,4 @@ TEST(RandomFaces, BecomeMeshesOrErrors) {
   EXPECT_LE(counts.claimed, 1 + count / 50);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

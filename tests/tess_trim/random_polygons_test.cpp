@@ -2,8 +2,7 @@
 
 #include "tess_trim/plane_reference.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 Triangles copy_of(PolygonTriangles& sweep) { return {sweep.triangles().begin(), sweep.triangles().end()}; }
 
@@ -159,5 +158,4 @@ TEST(RandomPolygons, OfSmallIntegersAreRefusedIfAndOnlyIfTheyCross) {
   EXPECT_GT(done, 5000);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

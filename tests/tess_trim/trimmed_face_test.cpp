@@ -10,8 +10,7 @@
 #include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 /// The part that loops keep, in closed form.
 struct Kept {
@@ -321,5 +320,4 @@ TEST(TrimmedFace, OfRandomDiscsHasTheirAreaAndNoCracks) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -9,8 +9,7 @@
 #include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 // Inside is odd parity: a bow tie keeps both of its triangles, two discs that overlap lose what they share.
 TEST(TrimmedFace, OfLoopsThatCrossKeepsWhatAnOddNumberEncloses) {
@@ -164,5 +163,4 @@ TEST(TrimmedFace, OfAnUnusableLoopIsWholeAndNamed) {
   EXPECT_EQ(set.patch_count(), 24u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -21,8 +21,7 @@
 #include "tessera/tessellation.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class Assimp : public ToolTest {};
 
@@ -140,5 +139,4 @@ TEST_F(Assimp, IsNotHere) { GTEST_SKIP() << "assimp is not found: libassimp-dev 
 
 #endif
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

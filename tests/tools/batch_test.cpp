@@ -10,8 +10,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class Batch : public ToolTest {
  protected:
@@ -298,5 +297,4 @@ TEST_F(Batch, WrongOptionsAreSaid) {
   expect_failure({"info", "m0.json", "--resume"}, 2, "tessera: --resume: needs --list FILE");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

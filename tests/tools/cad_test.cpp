@@ -7,8 +7,7 @@
 #include "tools/picture.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 using CadTool = ToolTest;
@@ -179,5 +178,4 @@ TEST_F(CadTool, AnInterruptEndsTheReader) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -2,8 +2,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using CommandLine = ToolTest;
 
@@ -226,5 +225,4 @@ TEST_F(CommandLine, OutputsThatCannotBeWrittenEndWithOne) {
                  "file/a/a.csv: cannot be written");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -3,8 +3,7 @@
 #include "tessera/io.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 using ConvertTool = ToolTest;
@@ -92,5 +91,4 @@ TEST_F(ConvertTool, PicturesOfNumbers) {
   expect_failure({"raycast", teapot, "-o", "b.tif"}, 2, "pictures are written as .png, .exr");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "tessera/io.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class EvalTool : public ToolTest {
  protected:
@@ -142,5 +141,4 @@ TEST_F(EvalTool, NoRowsGiveAHeaderAlone) {
   EXPECT_EQ(output_of({"eval", teapot, "--params", "p.csv"}), "surface,u,v,x,y,z,nx,ny,nz\n");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

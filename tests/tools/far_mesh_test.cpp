@@ -3,8 +3,7 @@
 #include "support/file_triangles.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -98,5 +97,4 @@ TEST_F(FarMeshTool, PiecesHaveTheBytesOfTheWhole) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -5,8 +5,7 @@
 #include "tessera/io.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -147,5 +146,4 @@ TEST_F(Files, MeshesAreCheckedOneByOne) {
   EXPECT_EQ(reports[2]["mesh"], "m3.ply");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

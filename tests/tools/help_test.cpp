@@ -5,8 +5,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class Help : public ToolTest {
  protected:
@@ -172,5 +171,4 @@ TEST_F(Help, FishCompletes) {
   EXPECT_NE(offers("tessera info oth").find("other.bpt"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

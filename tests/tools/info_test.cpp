@@ -7,8 +7,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -201,5 +200,4 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

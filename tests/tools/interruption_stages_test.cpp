@@ -9,8 +9,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
@@ -174,5 +173,4 @@ TEST_F(InterruptedStages, BatchesEndTheirWorkers) {
   expect_end({"tessellate", "--list", "list.txt", "-o", "meshes/{name}.ply", "--relative", "1e-5", "--fewest"});
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

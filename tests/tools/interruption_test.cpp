@@ -7,8 +7,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class Interruption : public ToolTest {
  protected:
@@ -102,5 +101,4 @@ TEST_F(Interruption, FilesBeyondTheLimitAreAnError) {
   }
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

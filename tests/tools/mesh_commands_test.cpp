@@ -5,8 +5,7 @@
 #include "tessera/io.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 using MeshTools = ToolTest;
@@ -256,5 +255,4 @@ TEST_F(MeshTools, EveryTeasetModelBecomesAMesh) {
   EXPECT_GE(models, 2);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "tessera/io.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -149,5 +148,4 @@ INSTANTIATE_TEST_SUITE_P(Tools, Models, testing::ValuesIn(model_files()), [](con
   return name;
 });
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 using CommonOptions = ToolTest;
@@ -105,5 +104,4 @@ TEST_F(CommonOptions, RowsAreJsonOnStandardOutput) {
   EXPECT_EQ(cells_of(content_of(folder_ / "a.csv")).size(), 1u + 32 * 4);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -4,8 +4,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -118,5 +117,4 @@ TEST_F(Output, OpenMeshesAreAnErrorOnRequest) {
   EXPECT_EQ(open.output.rfind("open.obj: not closed\n", 0), 0u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

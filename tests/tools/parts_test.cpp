@@ -11,8 +11,7 @@
 #include "tessera/topology.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -201,5 +200,4 @@ TEST_F(Parts, FilesWithAndWithoutShapesBecomeOneMesh) {
   EXPECT_EQ(gltf("a.gltf")["nodes"].size(), 37u);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -7,8 +7,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class PiecesTest : public ToolTest {
  protected:
@@ -123,5 +122,4 @@ TEST_F(PiecesTest, FaultsLeaveNothing) {
   expect_failure({"tessellate", teapot, "-o", "a.ply", "--in-pieces", "100K", "--max-triangles", "1000"}, 1, "limit");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -8,8 +8,7 @@
 #include "tools/picture.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 using RaycastTool = ToolTest;
@@ -299,5 +298,4 @@ TEST_F(RaycastTool, ExactPicturesHaveTheSizeAskedFor) {
   EXPECT_EQ(png_size(content_of(folder_ / "exact.png")), (std::pair{40u, 30u}));
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -2,8 +2,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -59,5 +58,4 @@ TEST_F(Strict, IsNotForGrids) {
                  "cannot be combined with --grid");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -6,8 +6,7 @@
 #include "tools/run_in_terminal.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 class Terminal : public ToolTest {
  protected:
@@ -119,5 +118,4 @@ TEST_F(Terminal, NoBarInAPipeAndOnADumbTerminal) {
   EXPECT_EQ(show({"raycast", teapot, "-o", "a.png", "--size", "500x500"}, dumb).screen, "");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -2,8 +2,7 @@
 
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -145,5 +144,4 @@ TEST_F(Tolerances, WrongOnesAreRefused) {
   expect_refusal({"--triangles", "99", "--max-triangles", "9"}, 2, "");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

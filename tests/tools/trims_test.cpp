@@ -4,8 +4,7 @@
 #include "tools/picture.h"
 #include "tools/tool_test.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 using nlohmann::json;
 
@@ -134,5 +133,4 @@ TEST_F(Trims, HitsNameTheirFaces) {
   EXPECT_NE(table.find("\n2,0,,,,,,,,,,,,,\n"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

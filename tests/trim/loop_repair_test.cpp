@@ -9,8 +9,7 @@
 
 #include "trim/trim_shapes.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::value_of;
 
@@ -164,5 +163,4 @@ TEST(LoopRepair, RefusesWhatIsTooLarge) {
   EXPECT_EQ(turns.status().message(), "loop 0 runs over more than 64 periods of the surface");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

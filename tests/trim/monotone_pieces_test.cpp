@@ -9,8 +9,7 @@
 #include "trim/quad_winding.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::Quad;
 
@@ -113,5 +112,4 @@ TEST(MonotonePieces, CurvesAlongALineMoveOntoIt) {
   EXPECT_EQ(made.gaps, 0u);
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -9,8 +9,7 @@
 #include "trim/quad_winding.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::Quad;
 
@@ -95,5 +94,4 @@ TEST(PieceSide, EndsBelongToTheUpperNeighbour) {
   EXPECT_EQ(side_of(level, {0.5, 1e-300}), PieceSide::beside);
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -7,8 +7,7 @@
 
 #include "trim/quad_winding.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::Quad;
 using test::QuadBezier;
@@ -123,5 +122,4 @@ TEST(PlaneBezier, ExtremaThatCoincide) {
   EXPECT_EQ(cuts, std::vector<double>{0.5});
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -9,8 +9,7 @@
 #include "trim/trim_region_impl.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::value_of;
 
@@ -148,5 +147,4 @@ TEST(RegionCells, AnswerAsAllPiecesTogetherDo) {
   EXPECT_LT(border, checked / 2);
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

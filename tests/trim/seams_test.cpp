@@ -9,8 +9,7 @@
 #include "tessera/trim_region.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::value_of;
 
@@ -144,5 +143,4 @@ TEST(TrimRegion, GapsWhereBothSeamsCross) {
     }
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

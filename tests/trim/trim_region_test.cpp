@@ -12,8 +12,7 @@
 #include "trim/quad_winding.h"
 #include "trim/trim_shapes.h"
 
-namespace tessera {
-namespace {
+namespace tessera { namespace {
 
 using test::Quad;
 using test::value_of;
@@ -316,5 +315,4 @@ TEST(TrimRegion, BadArguments) {
   EXPECT_EQ(fault({0, 1}, {0, 1}, {.snap = 0.1}).message(), "snap must be from 0 to 0.001, found 0.1");
 }
 
-}  // namespace
-}  // namespace tessera
+}}  // namespace tessera

@@ -11,8 +11,7 @@
 #include "tessera/execution.h"
 #include "tessera/version.h"
 
-namespace tessera::cli {
-namespace {
+namespace tessera::cli { namespace {
 
 constexpr int success = 0, bad_input = 1, bad_command_line = 2;
 constexpr const char* hint = "\nTry tessera --help, or tessera help COMMAND.";
@@ -73,8 +72,7 @@ int run(int argc, char** argv) {
   return bad_command_line;
 }
 
-}  // namespace
-}  // namespace tessera::cli
+}}  // namespace tessera::cli
 
 int main(int argc, char** argv) {
   try {

@@ -18,8 +18,7 @@
 #include "tessera/version.h"
 #include "tessera_mpi/mpi_team.h"
 
-namespace tessera::cli {
-namespace {
+namespace tessera::cli { namespace {
 
 constexpr int success = 0, bad_input = 1, bad_command_line = 2;
 constexpr const char* hint = "\nTry tessera_mpi --help, or tessera_mpi COMMAND --help.";
@@ -105,8 +104,7 @@ int run(int argc, char** argv, MpiTeam& team) {
   return bad_command_line;
 }
 
-}  // namespace
-}  // namespace tessera::cli
+}}  // namespace tessera::cli
 
 int main(int argc, char** argv) {
   using namespace tessera::cli;

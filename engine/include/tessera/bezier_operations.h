@@ -15,7 +15,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A Bezier curve: degree + 1 points, and as many weights > 0, or none if polynomial.
 struct BezierPolygon {
@@ -146,5 +146,5 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
 /// is too small).
 Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k = 1, bool reversed = false);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

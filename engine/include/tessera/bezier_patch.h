@@ -11,7 +11,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The largest degree in each direction; the smallest is 1.
 inline constexpr int max_degree = 15;
@@ -116,5 +116,5 @@ struct UnitNormal {
 /// patch along the parameter that leads away from the collapsed edge (from r_u and r_uv, or r_v and r_uv).
 UnitNormal unit_normal(const BezierPatch& patch, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -13,7 +13,7 @@
 #include "tessera/geometry.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An id of nothing.
 inline constexpr std::uint32_t no_id = 0xffffffff;
@@ -51,5 +51,5 @@ struct Shell {
   std::uint32_t solid = no_id;       ///< below Shape::solid_count: it is the solid's skin, or bounds a cavity of it
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

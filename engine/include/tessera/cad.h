@@ -51,7 +51,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Formats of read_cad().
 enum class CadFormat {
@@ -83,5 +83,5 @@ Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& opti
 /// Whether read_cad() knows the extension.
 bool is_cad_file(const std::filesystem::path& path);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -2,7 +2,7 @@
 // Colours of faces, parts and instances.
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A colour in sRGB, each value from 0 to 1, as files state it.
 struct Colour {
@@ -13,5 +13,5 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;  ///< by all values
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -18,7 +18,7 @@
 #include "tessera/surface.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A place in a grid of patches.
 struct PatchLocation {
@@ -238,5 +238,5 @@ Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options = 
 
 /// @}
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

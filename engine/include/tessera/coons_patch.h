@@ -14,7 +14,7 @@
 #include "tessera/parametric_surface.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A direction of parameters.
 enum class Direction : std::uint8_t { u, v };
@@ -139,5 +139,5 @@ Result<SurfaceJet> evaluate_jet(const CoonsPatch& patch, double u, double v);
 /// Returns the position alone, with one call of each function. Errors: as above.
 Result<Vec3> position(const CoonsPatch& patch, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An interval of a parameter, from < to.
 struct Interval {
@@ -87,5 +87,5 @@ CurveJet evaluate_jet(const Curve& curve, double t);
 /// Returns the position alone, with the same bits.
 Vec3 position(const Curve& curve, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -10,7 +10,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Joins edges that run side by side, so that faces share them.
 ///
@@ -47,5 +47,5 @@ Result<double> joining_distance(const Shape& shape);
 /// Makes a shape of surfaces without edges, and joins them as above. Errors: as above.
 Result<Shape> joined_shape(std::span<const ModelSurface> surfaces, double distance);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -21,7 +21,7 @@
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class CoonsPatch;
 class ParametricSurface;
@@ -331,5 +331,5 @@ template <class T>
 Status evaluate(const RuledSurface& surface, std::span<const double> u, std::span<const double> v, const View3<T>& out,
                 const Execution& execution = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -11,7 +11,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An instruction set that kernels are compiled for.
 enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64 };
@@ -56,5 +56,5 @@ struct Execution {
   ExecutionReport* report = nullptr;  ///< filled if not null
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

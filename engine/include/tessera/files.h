@@ -18,7 +18,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Unlinks the temporaries of open OutputFiles, of at most eight at once. For signal handlers that end the process:
 /// async-signal-safe.
@@ -217,5 +217,5 @@ Status refused_element(const Text& text, const Status& status, const std::string
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

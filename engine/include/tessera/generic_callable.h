@@ -22,7 +22,7 @@
 #include "tessera/parametric_surface.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 namespace generic {
 
@@ -151,5 +151,5 @@ Result<ParametricSurface> generic_surface_over_disc(const F& f, const Disc& disc
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -8,7 +8,7 @@
 #include <limits>
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A point or a vector. Lengths are in the model's own unit.
 struct Vec3 {
@@ -164,5 +164,5 @@ struct EdgeMask {
   friend bool operator==(const EdgeMask&, const EdgeMask&) = default;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

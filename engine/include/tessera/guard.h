@@ -8,7 +8,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The Status of the exception that is being handled: out_of_memory, or internal with its message.
 [[gnu::cold]] inline Status status_of_exception() noexcept {
@@ -37,5 +37,5 @@ template <class Body>
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

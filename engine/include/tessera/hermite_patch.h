@@ -16,7 +16,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class PatchGrid;  // tessera/convert.h
 
@@ -191,5 +191,5 @@ class HermiteNetwork {
 /// outside the domain the nearest patch continues. Derivatives are by u and v.
 SurfaceJet evaluate_jet(const HermiteNetwork& network, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -17,7 +17,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Reads the surfaces of a file.
 ///
@@ -200,5 +200,5 @@ Result<std::string> read_file(const std::filesystem::path& path);
 
 /// @}
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

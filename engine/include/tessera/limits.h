@@ -10,7 +10,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The work that a call cannot avoid, whatever the kernel.
 struct Work {
@@ -45,5 +45,5 @@ Result<Limits> measure_limits(const LimitsOptions& options = {});
 /// nothing.
 double seconds_at_limit(const Limits& limits, const Work& work);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -12,7 +12,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A direction of principal curvature.
 struct PrincipalDirection {
@@ -80,5 +80,5 @@ struct NetReport {
 /// powers of the smallest weight). Errors: invalid_argument (samples, tolerance).
 Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& options = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -15,7 +15,7 @@
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The sizes of a mesh, in records.
 struct MeshCapacity {
@@ -108,5 +108,5 @@ struct MeshReport {
 /// double.
 Result<MeshReport> check(const Mesh& mesh);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

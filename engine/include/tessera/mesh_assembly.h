@@ -17,7 +17,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The mesh of a shape, in the shape's own space. Parts may have colours.
 struct ShapeMesh {
@@ -79,5 +79,5 @@ Result<std::vector<MeshPart>> parts_by_face(const Mesh& mesh, const PatchSet& se
 /// = the shape), count_mismatch (more than 2^32 - 1 vertices).
 Result<Mesh> flatten(const MeshAssembly& assembly);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

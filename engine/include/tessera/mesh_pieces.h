@@ -15,7 +15,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The sizes of a mesh, all pieces together, and the attributes that every piece has.
 struct MeshTotals {
@@ -147,5 +147,5 @@ Status write_pvtp(const MeshTotals& totals, const std::filesystem::path& index, 
 
 /// @}
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

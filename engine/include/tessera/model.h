@@ -21,7 +21,7 @@
 #include "tessera/trim_loop.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A named surface, its placement in the model, and the loops that trim it. Grids ignore the loops: they see each patch
 /// of a set as a whole. Copies share everything.
@@ -114,5 +114,5 @@ Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSet
 /// those of PatchSet::make().
 Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -15,7 +15,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Where the surfaces of a model lie.
 struct SurfaceExtents {
@@ -58,5 +58,5 @@ struct ModelPart {
 Result<ModelPart> part_of(const Model& model, const SurfaceExtents& extents, std::size_t first, std::size_t end,
                           double reach);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

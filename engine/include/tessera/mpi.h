@@ -19,7 +19,7 @@
 #include "tessera/transport.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The largest piece that a message is sent in: MPI counts bytes by int.
 inline constexpr std::size_t max_mpi_piece = std::size_t{1} << 30;
@@ -61,5 +61,5 @@ class SharedCounter {
 Status write_ply_piece(MPI_Comm communicator, const std::filesystem::path& file, const PlyLayout& layout,
                        const Mesh& piece, const PiecePlace& place);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -16,7 +16,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A NURBS surface: s(u,v) = sum_ij N_{i,p}(u) N_{j,q}(v) P_ij or, rational, sum N N w_ij P_ij / sum N N w_ij, of
 /// degrees 1 to max_degree (Piegl and Tiller, The NURBS Book, 2nd ed., ch. 3 and 4).
@@ -138,5 +138,5 @@ Result<BSplineSurface> make_nurbs_cone(const Axis& axis, double bottom, double t
 
 /// @}
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -18,7 +18,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The caller's functions for a surface p(u,v). Threads: one thread calls the functions at a time, unless you make
 /// const calls on the surface from several threads. An exception becomes a Status; if a bound throws one, there is no
@@ -168,5 +168,5 @@ Result<Vec3> position(const BorderCurve& border, double t);
 /// Returns the border's point and derivatives at t. Errors: as for position().
 Result<CurveJet> evaluate_jet(const BorderCurve& border, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -15,7 +15,7 @@
 #include "tessera/transport.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the model's closest hits of this part's run of the rays, run_of_part(hits.size(), part, part_count).
 ///
@@ -38,5 +38,5 @@ Result<std::vector<Hit>> merge_closest(Transport& transport, std::span<const Hit
 Result<std::vector<Hit>> closest_in_parts(Transport& transport, const RayScene& scene, std::uint64_t first_patch,
                                           std::span<const Ray> rays, const Execution& execution = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

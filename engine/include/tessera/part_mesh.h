@@ -16,7 +16,7 @@
 #include "tessera/transport.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A model of which each part can read any run of surfaces, such as a file (see surface_file.h).
 struct SurfaceSource {
@@ -95,5 +95,5 @@ struct PartSums {
 /// options.max_triangles); those of Transport::exchange().
 Result<PartSums> sum_parts(const Result<PartMesh>& own, const TessellationOptions& options, Transport& transport);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

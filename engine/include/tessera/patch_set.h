@@ -12,7 +12,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The numbers in which the coefficients of a block are held.
 enum class Precision : std::uint8_t { single_precision, double_precision };
@@ -127,5 +127,5 @@ class PatchSet {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

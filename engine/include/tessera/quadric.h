@@ -14,7 +14,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The quadric a x^2 + b y^2 + c z^2 + 2 d xy + 2 e yz + 2 f xz + 2 g x + 2 h y + 2 j z + k = 0, that is P Q P^T = 0
 /// with P = [x y z 1] and Q = [[a,d,f,g],[d,b,e,h],[f,e,c,j],[g,h,j,k]].
@@ -180,5 +180,5 @@ QuadricParameters canonical_parameters(const QuadricPiece& piece, double u, doub
 /// canonical_parameters().
 QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -19,7 +19,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Makes a user geometry of all patches of a scene in exact mode.
 ///
@@ -59,5 +59,5 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry);
 /// Errors: as make_embree_geometry().
 Result<unsigned> attach(const RayScene& scene, RTCScene to);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

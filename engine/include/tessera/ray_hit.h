@@ -9,7 +9,7 @@
 #include "tessera/geometry.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The points origin + t * direction with tnear <= t <= tfar, in the model's coordinates.
 ///
@@ -95,5 +95,5 @@ struct HitLists {
   std::vector<std::size_t> first;  ///< one more than there are rays
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -20,7 +20,7 @@
 #include "tessera/strided_view.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
@@ -331,5 +331,5 @@ Status occluded(const RayScene& scene, const RayViews<float>& rays, const View1<
 Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1<std::uint8_t>& occluded,
                 const BatchOptions& options = {}, const Execution& execution = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

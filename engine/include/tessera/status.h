@@ -13,7 +13,7 @@
 #include <utility>
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Kind of an error. The message gives the details.
 enum class StatusCode : std::uint8_t {
@@ -83,5 +83,5 @@ class [[nodiscard]] Result {
   Status status_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -6,7 +6,7 @@
 #include <span>
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A view of `size` records of N components each, for structure-of-arrays and interleaved memory. Component c of record
 /// k is `component[c][k * stride]`. An empty view (the default) means "not wanted".
@@ -75,5 +75,5 @@ struct Quantities {
 /// A set of quantities, as `{.position = true, .normal = true}`.
 using QuantityFlags = Quantities<bool>;
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

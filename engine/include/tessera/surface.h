@@ -16,7 +16,7 @@
 #include "tessera/tensor_patch.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A surface of any kind.
 using Surface = std::variant<BezierPatch, TensorPatch, BSplineSurface, HermitePatch, HermiteNetwork, RuledSurface,
@@ -35,5 +35,5 @@ std::array<double, 2> own_parameters(const Surface& surface, double u, double v)
 /// own_parameters().
 std::array<double, 2> grid_parameters(const Surface& surface, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

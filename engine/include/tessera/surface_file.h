@@ -12,7 +12,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A .bpt or .g2 file that stays on disk.
 ///
@@ -49,5 +49,5 @@ class SurfaceFile {
   std::unique_ptr<Content> content_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A basis of the polynomials of one degree on [0,1], given by the matrix M that turns the geometry of a curve into its
 /// power coefficients: r(t) = [1 t .. t^n] M G, with the blending functions f_i(t) = sum_k t^k M_ki. Immutable except
@@ -144,5 +144,5 @@ class ExplicitPolynomial {
 /// 106 bits, so powers that cancel far from zero lose nothing while they are below 2^50 times the result.
 SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks all ids of a model, of vertices, edges, faces, solids, shapes, and the surfaces of instances; positions,
 /// ranges and tolerances must be finite. Each loop must have one coedge per curve, or none. A coedge's parameter must
@@ -70,5 +70,5 @@ Result<std::vector<bool>> closed_shells(const Shape& shape);
 /// Errors: invalid_argument (fewer than two samples), those of evaluate_jet().
 Result<std::vector<double>> edge_gaps(const Shape& shape, int samples = 9);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

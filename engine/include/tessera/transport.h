@@ -16,7 +16,7 @@
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Bytes from one part to another.
 using Message = std::vector<std::byte>;
@@ -125,5 +125,5 @@ struct JobFolder {
 Result<std::unique_ptr<Transport>> make_job_transport(const JobFolder& options, std::size_t part,
                                                       std::size_t part_count, std::string_view run);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

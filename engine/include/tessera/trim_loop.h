@@ -10,7 +10,7 @@
 #include "tessera/curve.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A closed chain of curves in the surface's parameters (x = u, y = v; z is ignored). The inside of a hole is cut away,
 /// and so is the outside of all other loops.
@@ -49,5 +49,5 @@ struct TrimOptions {
   double snap = 0x1p-44;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -15,7 +15,7 @@
 #include "tessera/trim_loop.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// On which side of its loops a point of a face lies.
 enum class TrimSide : std::uint8_t {
@@ -79,5 +79,5 @@ class TrimRegion {
   std::shared_ptr<const Impl> impl_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

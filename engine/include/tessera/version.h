@@ -15,10 +15,10 @@
 // compiled with the headers of another interface does not link.
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the version of the library at run time, such as "0.1.0". Threads: any.
 std::string_view version();
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

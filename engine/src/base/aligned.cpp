@@ -2,7 +2,7 @@
 
 #include <sys/mman.h>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void* allocate_aligned(std::size_t bytes) {
   void* const memory = ::operator new(bytes, alignment_of(bytes));
@@ -13,4 +13,4 @@ void* allocate_aligned(std::size_t bytes) {
   return memory;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

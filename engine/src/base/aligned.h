@@ -7,7 +7,7 @@
 
 #include "base/internal_export.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::size_t cache_line = 64;
 
@@ -55,4 +55,4 @@ struct UnsetAllocator : AlignedAllocator<T> {
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A friend of every public class that keeps its implementation in `impl_`.
 struct ImplAccess {
@@ -19,4 +19,4 @@ std::conditional_t<std::is_const_v<T>, const typename T::Impl, typename T::Impl>
   return ImplAccess::of(object);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

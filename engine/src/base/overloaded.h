@@ -1,7 +1,7 @@
 #pragma once
 // Makes one callable of several lambdas, to visit variants with.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 template <class... F>
 struct Overloaded : F... {
@@ -10,4 +10,4 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;  // clang 14 does not deduce an aggregate's arguments
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// |a| without over- or underflow on the way.
 inline double safe_length(const Vec3& a) {
@@ -14,4 +14,4 @@ inline double safe_length(const Vec3& a) {
   return largest * length({a.x / largest, a.y / largest, a.z / largest});
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

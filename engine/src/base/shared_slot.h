@@ -5,7 +5,7 @@
 #include <mutex>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Holds one shared pointer, empty at first. Threads: any number.
 template <class T>
@@ -28,4 +28,4 @@ class SharedSlot {
   std::shared_ptr<const T> value_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,6 +1,6 @@
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Status::Status(StatusCode code, std::string message, std::ptrdiff_t index)
     : code_(code), index_(index), message_(std::move(message)) {}
@@ -41,4 +41,4 @@ std::string_view name(StatusCode code) {
   return "unknown";
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

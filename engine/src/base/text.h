@@ -9,7 +9,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The shortest text that reads back as the same double; "nan" for every NaN, whose sign means nothing. For messages of
 /// failures, hence cold: the compiler optimises the calls for size.
@@ -35,4 +35,4 @@ namespace tessera::inline abi_0_1 {
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

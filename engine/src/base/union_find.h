@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Sets of 0 .. count - 1, each represented by its least member (Tarjan 1975, with path halving).
 class UnionFind {
@@ -44,4 +44,4 @@ class UnionFind {
   std::vector<std::uint8_t> turned_;  ///< whether a member runs against its parent; 0 for roots
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

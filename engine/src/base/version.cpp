@@ -1,7 +1,7 @@
 #include "tessera/version.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 std::string_view version() { return TESSERA_VERSION; }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Replaces values[0..degree] by factor * (v_{i-1} - v_i), one value more.
@@ -62,4 +62,4 @@ template void bernstein_derivatives(int, long double, long double*);
 template void bernstein_second_derivatives(int, double, double*);
 template void bernstein_second_derivatives(int, long double, long double*);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,7 +1,7 @@
 #pragma once
 // Bernstein polynomials B_{i,n}(t) = C(n,i) t^i (1-t)^(n-i) and their derivatives, all of one degree at one parameter.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns C(n, k): exact up to n = 30, 0 for k outside 0..n.
 double binomial(int n, int k);
@@ -20,4 +20,4 @@ void bernstein_derivatives(int degree, Real t, Real* values);
 template <class Real>
 void bernstein_second_derivatives(int degree, Real t, Real* values);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

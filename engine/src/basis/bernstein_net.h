@@ -9,7 +9,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The polynomial sum_ij B_{i,degree_u}(u) B_{j,degree_v}(v) values[i * (degree_v + 1) + j]. A curve has degree_v = 0.
 /// T is double or Vec3.
@@ -105,4 +105,4 @@ std::pair<BernsteinNet<T>, BernsteinNet<T>> halves(BernsteinNet<T> curve) {
   return {std::move(left), std::move(curve)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns the matrix B_{j,n}(parameters[i]).
@@ -77,4 +77,4 @@ double lobatto_error_factor(int n) {
 
 double lobatto_lebesgue_constant(int n) { return 1 + 2 / std::numbers::pi * std::log(n + 1.0); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "basis/small_matrix.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns x_i = sin^2(pi i / (2 n)), i = 0..n, n >= 1: the extrema of the Chebyshev polynomial on [0,1]. They are
 /// increasing, symmetric to rounding, and exactly 0 and 1 at the ends.
@@ -38,4 +38,4 @@ double lobatto_error_factor(int n);
 /// Returns the constant in |If| <= constant max |f(x_i)|: 1 + (2/pi) log(n + 1) (Trefethen, thm. 15.2).
 double lobatto_lebesgue_constant(int n);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The number high + low; |low| is at most half a unit in the last place of high.
 struct DoubleDouble {
@@ -40,4 +40,4 @@ inline DoubleDouble operator/(const DoubleDouble& a, double b) {
   return two_sum(quotient, (std::fma(-quotient, b, a.high) + a.low) / b);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "basis/double_double.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t max_terms = 32;
@@ -49,4 +49,4 @@ int exact_orientation(const ParameterPoint& a, const ParameterPoint& b, const Pa
   return sign_of_sum(terms);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

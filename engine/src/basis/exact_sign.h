@@ -8,7 +8,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the sign, -1, 0 or 1, of the exact sum of at most 32 finite numbers.
 int sign_of_sum(std::span<const double> terms);
@@ -30,4 +30,4 @@ inline int orientation(const ParameterPoint& a, const ParameterPoint& b, const P
   return exact_orientation(a, b, c);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

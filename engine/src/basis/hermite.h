@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 // All functions take any finite t. They use products, which do not cancel on [0,1].
 
@@ -24,4 +24,4 @@ inline std::array<double, 4> hermite_second_derivatives(double t) {
   return {12 * t - 6, 6 * t - 4, 6 * t - 2, 6 - 12 * t};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

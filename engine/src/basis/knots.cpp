@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::string knot_text(std::span<const double> knots, const std::string& name, std::size_t k) {
@@ -116,4 +116,4 @@ void blossom_weights(int degree, std::span<const double> knots, std::size_t span
 template void blossom_weights(int, std::span<const double>, std::size_t, const double*, double*);
 template void blossom_weights(int, std::span<const double>, std::size_t, const long double*, long double*);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

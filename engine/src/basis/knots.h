@@ -9,7 +9,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// One direction of a spline: the knots u_0 .. u_{m+p+1} for degree p and points 0 .. m, and the parameter interval in
 /// use, [from, to] within [u_p, u_{m+1}]. A view: it does not own the knots, which have passed check_knots.
@@ -50,4 +50,4 @@ std::vector<std::size_t> distinct_spans(const KnotLine& line);
 template <class Real>
 void blossom_weights(int degree, std::span<const double> knots, std::size_t span, const Real* arguments, Real* weights);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

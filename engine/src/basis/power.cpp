@@ -1,6 +1,6 @@
 #include "basis/power.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 template <class Real>
 void power_values(int degree, Real t, Real* values) {
@@ -32,4 +32,4 @@ template void power_derivatives(int, long double, long double*);
 template void power_second_derivatives(int, double, double*);
 template void power_second_derivatives(int, long double, long double*);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,7 +1,7 @@
 #pragma once
 // Monomials t^i and their derivatives, all up to one degree at one parameter.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 // Each function writes degree + 1 values, i = 0..degree, for degree >= 0 and any finite t; 0^0 = 1. Real is double or
 // long double.
@@ -16,4 +16,4 @@ void power_derivatives(int degree, Real t, Real* values);
 template <class Real>
 void power_second_derivatives(int degree, Real t, Real* values);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

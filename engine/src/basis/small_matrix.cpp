@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Divides each column by its largest entry and returns these entries; nothing if a column is zero or not finite.
@@ -90,4 +90,4 @@ std::vector<Vec3> tensor_product(const Matrix& a, std::span<const Vec3> net, con
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

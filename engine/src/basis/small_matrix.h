@@ -7,7 +7,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A matrix of `rows` x `columns` entries, initially zero.
 class Matrix {
@@ -36,4 +36,4 @@ std::optional<Matrix> inverse(const Matrix& matrix);
 /// Returns a G b^T for a net G of a.columns() x b.columns() points [i][j], rounded once, at the end.
 std::vector<Vec3> tensor_product(const Matrix& a, std::span<const Vec3> net, const Matrix& b);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

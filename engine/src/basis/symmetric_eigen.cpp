@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
@@ -45,4 +45,4 @@ SymmetricEigen symmetric_eigen(double xx, double yy, double zz, double xy, doubl
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct SymmetricEigen {
   std::array<double, 3> values;  ///< not sorted: each stays with the axis nearest to its vector
@@ -17,4 +17,4 @@ struct SymmetricEigen {
 /// finite and their squares must not overflow.
 SymmetricEigen symmetric_eigen(double xx, double yy, double zz, double xy, double yz, double xz);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

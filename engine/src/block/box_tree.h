@@ -8,7 +8,7 @@
 #include "base/internal_export.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns a box that is larger to all sides. Of an empty one, an empty one.
 inline Box3 grown(const Box3& box, double by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
@@ -43,4 +43,4 @@ class BoxTree {
 /// Returns a tree of the boxes that come near others. It touches the same of these as a tree of all boxes.
 TESSERA_INTERNAL_EXPORT BoxTree tree_towards(std::span<const Box3> others, std::span<const Box3> boxes, double reach);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

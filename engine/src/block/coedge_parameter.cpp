@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 namespace {
 
@@ -46,4 +46,4 @@ double edge_parameter(const Coedge& coedge, const Curve& curve, double t) {
   return std::clamp(s0 + x * (s1 - s0), table.domain().from, table.domain().to);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

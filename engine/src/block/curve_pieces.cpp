@@ -8,7 +8,7 @@
 
 #include "block/point_tree.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t max_neighbours = 16;
@@ -172,4 +172,4 @@ std::vector<PiecePair> list_pairs(const FreeCurves& free, std::span<const CurveP
   return pairs;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 
 #include "block/free_curves.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A curve between two consecutive nodes.
 struct CurvePiece {
@@ -39,4 +39,4 @@ struct PiecePair {
 /// looked at. Time: O(n log n) for n pieces with few neighbours.
 std::vector<PiecePair> list_pairs(const FreeCurves& free, std::span<const CurvePiece> pieces);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

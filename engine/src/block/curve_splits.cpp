@@ -6,7 +6,7 @@
 
 #include "block/point_tree.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_rounds = 8;
@@ -142,4 +142,4 @@ void split_curves(FreeCurves& free, std::vector<BrepVertex>& vertices) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The face's point at the edge's parameter s.
@@ -57,4 +57,4 @@ Result<std::vector<double>> edge_gaps(const Shape& shape, int samples) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

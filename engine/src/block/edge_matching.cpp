@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status check(const Shape& shape, double distance) {
@@ -122,4 +122,4 @@ Result<Shape> joined_shape(std::span<const ModelSurface> surfaces, double distan
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

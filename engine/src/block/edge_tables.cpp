@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_depth = 10;
@@ -118,4 +118,4 @@ std::optional<Curve> following_parameter(const LeadingLine& leader, const Follow
   return fractions.curve();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "base/function_ref.h"
 #include "block/space_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A line that leads: its point at s, for s in a range.
 struct LeadingLine {
@@ -30,4 +30,4 @@ std::optional<Curve> following_parameter(const LeadingLine& leader, const Follow
 /// Returns the parameter that runs evenly from one end of `to` to the other. Empty if it is t = s or t = from + to - s.
 std::optional<Curve> even_parameter(const Interval& range, const Interval& to, bool turned);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

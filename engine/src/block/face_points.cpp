@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The parameter within [from, to] that is whole periods away.
@@ -49,4 +49,4 @@ Result<FacePoint> face_point(const ModelSurface& face, const Curve& curve, doubl
   return FacePoint{jet->position, plane.first.x * jet->du + plane.first.y * jet->dv};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A face's point on a curve of its loops, and the derivative by the curve's parameter.
 struct FacePoint {
@@ -14,4 +14,4 @@ struct FacePoint {
 /// those of evaluate_jet().
 Result<FacePoint> face_point(const ModelSurface& face, const Curve& curve, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// A curve that stays within this share of the distance is a point.
@@ -118,4 +118,4 @@ Result<FreeCurves> find_free_curves(Shape& shape, double distance, Line line, St
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

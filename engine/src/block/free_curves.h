@@ -8,7 +8,7 @@
 #include "block/space_curve.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Gives each loop without coedges edges of its own, one per curve, and each face without loops an outline along the
 /// sides of its domain. Curves of a loop that meet within `distance` share a vertex. Errors: those of evaluate_jet()
@@ -46,4 +46,4 @@ Result<FreeCurves> find_free_curves(Shape& shape, double distance, Line line, St
 /// The farthest that ends may lie from one another on two curves, for a reach within which the curves are.
 inline constexpr double end_reach = 1.5;
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "block/coedge_parameter.h"
 #include "block/edge_tables.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::uint32_t none = no_id;
@@ -231,4 +231,4 @@ Shape with_joined_loops(const Shape& shape, const FreeCurves& free, std::span<co
   return LoopJoiner(shape, free, pieces, groups, vertices, failure).run();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/topology.h"
 #include "trim/grid_loops.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The share of a tolerance that fits may use; the rest is for the rounding of placed points.
@@ -127,4 +127,4 @@ Result<PatchSet> make_patch_set(PatchGrid grid, const PatchSetOptions& options) 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

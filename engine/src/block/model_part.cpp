@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Calls use(edge) for the edges of all coedges of a face.
@@ -229,4 +229,4 @@ Result<ModelPart> part_of(const Model& model, const SurfaceExtents& extents, std
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/status.h"
 #include "trim/grid_loops.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// How far the outline of a spline, as CAD files have it, may be off the sides of its domain, as a share of it.
@@ -201,4 +201,4 @@ void ModelPatches::add_edges(std::uint32_t first_edge, const Shared<std::vector<
   edges_.faces.push_back(std::move(face));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

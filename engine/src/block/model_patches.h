@@ -12,7 +12,7 @@
 #include "tessera/model.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The part of a face that its loops keep.
 struct FaceTrims {
@@ -99,4 +99,4 @@ class ModelPatches {
   std::vector<std::size_t> ends_;  ///< the end of each surface's patches
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

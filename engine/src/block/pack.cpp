@@ -6,7 +6,7 @@
 #include "convert/basis/power_form.h"
 #include "surface/net/homogeneous.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The least share of the largest weight that a weight may be: derivatives grow with the inverse of that share, and
@@ -177,4 +177,4 @@ bool PatchSet::Impl::pack(std::size_t index) {
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/bezier_patch.h"
 #include "tessera/patch_set.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The number of components of a coefficient: x, y, z, and w for rational patches.
 constexpr int coefficient_components(bool rational) { return rational ? 4 : 3; }
@@ -172,4 +172,4 @@ std::array<T, 2> threshold_in(const DegenerateNormalThreshold& threshold) {
           static_cast<T>(std::min(threshold.noise, largest))};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

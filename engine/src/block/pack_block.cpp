@@ -8,7 +8,7 @@
 #include "kernel/table/kernel_table.h"
 #include "surface/net/patch_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Box3 box_of_lane(const kernel::NetBoxes& boxes, std::size_t lane) {
@@ -99,4 +99,4 @@ std::size_t PatchSet::Impl::pack_block(std::size_t block, const kernel::KernelTa
   return lanes;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/trim_loop.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The edges of all shapes, or instances of shapes, that a set is made of, one after the other.
 struct PatchEdges {
@@ -32,4 +32,4 @@ struct PatchEdges {
   std::vector<Face> faces;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -18,7 +18,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Patches of equal key share blocks; blocks lie in the order of the keys.
@@ -291,4 +291,4 @@ Status PatchSet::set_control_points(std::size_t index, std::span<const Vec3> poi
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

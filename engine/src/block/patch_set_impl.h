@@ -13,7 +13,7 @@
 #include "base/shared_slot.h"
 #include "tessera/patch_set.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 namespace kernel {
 struct KernelTable;
@@ -152,4 +152,4 @@ class PatchSet::Impl {
   Status pack_all();
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

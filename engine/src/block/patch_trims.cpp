@@ -5,7 +5,7 @@
 #include "base/impl_access.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Makes whole patches cut ones where a piece ends inside one of their sides and does not run along it.
@@ -55,4 +55,4 @@ std::vector<PatchUse> patch_uses(const TrimRegion& region) {
   return uses;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/patch_set.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The patches of a set that the loops of their faces cut.
 struct PatchTrims {
@@ -28,4 +28,4 @@ enum class PatchUse : std::uint8_t { out, whole, cut };
 /// mesh must have a vertex there.
 std::vector<PatchUse> patch_uses(const TrimRegion& region);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

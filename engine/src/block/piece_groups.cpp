@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The largest distance of a third piece from two that are an edge, as a share of the distance.
@@ -125,4 +125,4 @@ std::vector<PieceGroup> group_pieces(const FreeCurves& free, std::span<const Cur
   return grouper.groups();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

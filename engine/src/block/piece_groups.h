@@ -8,7 +8,7 @@
 #include "base/union_find.h"
 #include "block/curve_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A piece of a group.
 struct GroupMember {
@@ -31,4 +31,4 @@ using PieceGroup = std::vector<GroupMember>;
 std::vector<PieceGroup> group_pieces(const FreeCurves& free, std::span<const CurvePiece> pieces,
                                      std::vector<PiecePair> pairs, UnionFind& vertices);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A balanced k-d tree of points (Bentley 1975), kept as a permutation of them: the middle of each range divides it.
 class PointTree {
@@ -77,4 +77,4 @@ class PointTree {
   std::vector<std::uint8_t> axes_;  ///< along which the point in the middle of a range divides it
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "block/coedge_parameter.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_sample_depth = 8;
@@ -164,4 +164,4 @@ SpaceCurve::Nearest SpaceCurve::nearest_from(const Vec3& p, double t, const Inte
   return best;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

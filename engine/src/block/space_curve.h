@@ -9,7 +9,7 @@
 #include "block/face_points.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns `status` as "face 3 (rim): ...", with the index 3.
 Status in_face(const Shape& shape, std::size_t face, const Status& status);
@@ -70,4 +70,4 @@ class SpaceCurve {
 /// Where a segment from a to b is nearest to p: 0 at a, 1 at b.
 double nearest_fraction(const Vec3& a, const Vec3& b, const Vec3& p);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// "edge 7".
@@ -232,4 +232,4 @@ Result<std::vector<bool>> closed_shells(const Shape& shape) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "parallel/tbb_loop.h"
 #include "tessera/version.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 struct LastError {
@@ -120,7 +120,7 @@ CStatus run_work(const tsr_run* run, FunctionRef<CStatus(const Execution&)> work
   return status;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 
 using namespace tessera;
 

@@ -19,7 +19,7 @@
 #include "tessera/strided_view.h"
 #include "tessera/tessera_c.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The result of a call: a Status, or one of the two codes that C++ has no use for.
 struct CStatus {
@@ -188,4 +188,4 @@ CStatus give(Handle** out, std::shared_ptr<Object> object) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include <new>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// A slot's state, one word so that it changes at once: which object lies there, by number; the references that callers
@@ -146,4 +146,4 @@ Pin::~Pin() {
 void lock_handles() { table().mutex().lock(); }
 void unlock_handles() { table().mutex().unlock(); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

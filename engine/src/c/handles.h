@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An object that a handle stands for.
 class Object {
@@ -47,4 +47,4 @@ class Pin {
 void lock_handles();
 void unlock_handles();
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 
 using namespace tessera;
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::span<std::uint32_t> list(std::uint32_t* data, std::size_t count) {
@@ -111,7 +111,7 @@ CStatus mesh_copy(const tsr_mesh* mesh, Mesh& copy) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 
 extern "C" {
 

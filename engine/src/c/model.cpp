@@ -11,8 +11,7 @@
 
 using namespace tessera;
 
-namespace tessera::inline abi_0_1 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace {
 
 CStatus give_model(tsr_model** out, Result<Model>&& model) {
   if (!model) return model.status();
@@ -141,8 +140,7 @@ CStatus no_such(const char* what, std::size_t index, std::size_t count) {
   return status;
 }
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1
+}}}  // namespace tessera::abi_0_1
 
 extern "C" {
 

@@ -13,7 +13,7 @@
 #include "tessera/ray_scene.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A model never changes.
 struct CModel : Object {
@@ -87,4 +87,4 @@ struct CHits : Object {
   HitLists lists;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,8 +8,7 @@
 
 using namespace tessera;
 
-namespace tessera::inline abi_0_1 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace {
 
 Vec3 vector_of(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
 
@@ -48,8 +47,7 @@ PatchEdits edits_of(const uint32_t* patches, std::size_t count, const double* po
   return {.patch = {patches, count}, .points = {reinterpret_cast<const Vec3*>(points), point_count}};
 }
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1
+}}}  // namespace tessera::abi_0_1
 
 extern "C" {
 

@@ -9,8 +9,7 @@
 
 using namespace tessera;
 
-namespace tessera::inline abi_0_1 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace {
 
 static_assert(sizeof(HitKind) == 1 && static_cast<int>(HitKind::hit) == TSR_HIT &&
               static_cast<int>(HitKind::invalid_ray) == TSR_INVALID_RAY);
@@ -156,8 +155,7 @@ class SceneInUse {
   Reading own_, of_set_;
 };
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1
+}}}  // namespace tessera::abi_0_1
 
 extern "C" {
 

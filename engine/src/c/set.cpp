@@ -10,8 +10,7 @@
 
 using namespace tessera;
 
-namespace tessera::inline abi_0_1 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace {
 
 Result<PatchSet> packed(const Model& model, const tsr_set_options& options) {
   PatchSetOptions packing;
@@ -102,8 +101,7 @@ CStatus evaluate_points(CSet& of, const SurfaceSamples& samples, const tsr_jets&
   return evaluate(of.set, **map, samples, views, {}, execution);
 }
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1
+}}}  // namespace tessera::abi_0_1
 
 extern "C" {
 

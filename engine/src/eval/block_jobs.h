@@ -4,7 +4,7 @@
 #include "eval/block_normals.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// One job that serves block after block: turn_to() sets only the members that differ between blocks, because setting
 /// all of them takes as long as a small grid. The caller sets the outputs; turn_to() does not change them. Lives on a
@@ -70,4 +70,4 @@ class BlockJobs {
   kernel::GridJob<T> job_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

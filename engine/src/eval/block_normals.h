@@ -8,7 +8,7 @@
 #include "block/patch_set_impl.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Serves one block after the other. Lives on a task's stack; allocates nothing.
 template <class T>
@@ -84,4 +84,4 @@ class BlockNormals {
   alignas(cache_line) std::array<T, 4 * lanes> collapsed_{};
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

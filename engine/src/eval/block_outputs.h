@@ -11,7 +11,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The memory of the outputs of one call. Output after output is added; one that overlaps an earlier one is an error.
 class BlockMemory {
@@ -97,4 +97,4 @@ class BlockOutputs {
   std::size_t value_count_ = 0, kind_count_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include "basis/bernstein.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 AlignedVector<float> symmetric_weights(int degree, int rate) {
   AlignedVector<float> weights;
@@ -23,4 +23,4 @@ AlignedVector<float> symmetric_weights(int degree, int rate) {
   return weights;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "eval/staged_block.h"
 #include "eval/touched_blocks.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Data that all tasks of an update share.
 struct UpdateCall {
@@ -150,4 +150,4 @@ class EditedGrids {
   alignas(cache_line) std::array<T, max_coefficients * lanes> net_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -32,7 +32,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Some rows u of a block's grid.
@@ -271,4 +271,4 @@ std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool
   return items_per_task(blocks, points);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

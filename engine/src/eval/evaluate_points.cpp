@@ -17,7 +17,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Below these many samples one thread is faster than waking another.
@@ -136,4 +136,4 @@ template TESSERA_EXPORT Status evaluate(const PatchSet&, const SurfaceMap&, cons
 template TESSERA_EXPORT Status evaluate(const PatchSet&, const SurfaceMap&, const SurfaceSamples&,
                                         const QuantityViews<double>&, const PointOptions&, const Execution&);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

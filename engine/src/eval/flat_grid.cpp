@@ -6,7 +6,7 @@
 #include "eval/task_size.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t lanes = kernel::flat_lanes, group_rows = kernel::flat_rows;
@@ -136,4 +136,4 @@ Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, floa
   return status;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include "block/patch_set_impl.h"
 #include "eval/grid_plan_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Fills plan.flat if the flat kernel can evaluate the plan's grids and is faster: in float, for polynomial patches
 /// that share their parameters, with long rows, on an instruction set that has this kernel.
@@ -14,4 +14,4 @@ void tabulate_flat(const PatchSet::Impl& set, GridPlan::Impl& plan);
 Status evaluate_flat(const PatchSet::Impl& set, const GridPlan::Impl& plan, float* out, bool streaming,
                      const Execution& execution);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

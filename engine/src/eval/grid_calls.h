@@ -4,7 +4,7 @@
 #include "eval/grid_plan_impl.h"
 #include "eval/staged_block.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks a plan and outputs for all patches of the set. Returns the highest order of the derivatives that the outputs
 /// are made of. Errors: those of evaluate().
@@ -22,4 +22,4 @@ bool blocks_stream(const QuantityBlocks<T>& out, std::size_t records, Stores sto
 /// Returns how many blocks a task takes: all of them if one thread is faster than two.
 std::size_t blocks_per_task(const GridPlan::Impl& plan, std::size_t blocks, bool derivatives);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Values, first and second derivatives of one basis, computed in long double and rounded once: put(k, value) for k
@@ -307,4 +307,4 @@ Work GridPlan::work(const QuantityFlags& outputs) const {
   return work;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// `[k][order][i]` for parameter k: values, first and second derivatives, degree + 1 of each. One table per degree
 /// in use.
@@ -78,4 +78,4 @@ class GridPlan::Impl {
 Status evaluate(const PatchSet::Impl& set, const GridPlan& plan, const QuantityViews<float>& out,
                 const Execution& execution);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

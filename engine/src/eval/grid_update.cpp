@@ -14,7 +14,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 class GridUpdate::Impl {
  public:
   explicit Impl(const PatchSet::Impl& set) : touched_(set), patch_count_(set.patches.size()) {}
@@ -113,4 +113,4 @@ template TESSERA_EXPORT Status GridUpdate::run(PatchSet&, const GridPlan&, const
 template TESSERA_EXPORT Status GridUpdate::run(PatchSet&, const GridPlan&, const PatchEdits&,
                                                const QuantityBlocks<double>&, const Execution&);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

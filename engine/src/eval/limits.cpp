@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -72,4 +72,4 @@ double seconds_at_limit(const Limits& limits, const Work& work) {
                   std::max(work.bytes_written, work.bytes_read) / limits.store_bytes_per_second);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

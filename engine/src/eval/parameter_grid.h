@@ -10,7 +10,7 @@
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks that there is at least one parameter and that each lies within [from, to]. Errors: invalid_argument,
 /// non_finite (index = the parameter).
@@ -41,4 +41,4 @@ Status check_view(const View3<T>& out, std::span<const double> u, std::span<cons
   return checks.status();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

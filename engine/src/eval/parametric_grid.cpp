@@ -14,7 +14,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Row i of the grid.
@@ -101,4 +101,4 @@ template TESSERA_EXPORT Status evaluate(const ParametricSurface&, std::span<cons
 template TESSERA_EXPORT Status evaluate(const ParametricSurface&, std::span<const double>, std::span<const double>,
                                         const View3<double>&, const Execution&, Calls);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

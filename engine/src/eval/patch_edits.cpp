@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "surface/net/patch_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t edits_per_task = 256;
@@ -99,4 +99,4 @@ void finish_edits(PatchSet::Impl& set, const PatchEdits& edits) {
   if (!edits.patch.empty()) set.note_edits(edits.patch);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

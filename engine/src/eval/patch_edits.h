@@ -8,7 +8,7 @@
 #include "eval/touched_blocks.h"
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Whether a plan still holds for a patch with these control points.
 using KeepsShape = FunctionRef<bool(std::uint32_t patch, std::span<const Vec3> points)>;
@@ -27,4 +27,4 @@ void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlock
 /// Updates what the set derives from its points. Call it once, after pack_edits() of every touched block.
 void finish_edits(PatchSet::Impl& set, const PatchEdits& edits);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Data that all chunks of a call share.
 template <class T>
@@ -279,4 +279,4 @@ class PointChunk {
   alignas(cache_line) std::array<std::array<std::uint8_t, static_cast<std::size_t>(lanes) * batch>, 2> kinds_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

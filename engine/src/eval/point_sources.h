@@ -14,7 +14,7 @@
 #include "eval/surface_map_impl.h"
 #include "eval/view_checks.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the status of a sample that cannot be evaluated.
 inline Status sample_error(StatusCode code, std::size_t sample, const std::string& why) {
@@ -211,4 +211,4 @@ class SamplesBySurface {
   OutsideDomain outside_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

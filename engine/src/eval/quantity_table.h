@@ -7,7 +7,7 @@
 
 #include "tessera/strided_view.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// How often each component is divided by the widths of its patch along u and v. It is then by the surface's
 /// parameters.
@@ -85,4 +85,4 @@ inline constexpr std::size_t vector_quantities = count_of_width(3), scalar_quant
 inline constexpr std::size_t value_quantities = vector_quantities + scalar_quantities, kind_quantities = 2;
 static_assert(sizeof(Quantities<char>) == value_quantities + kind_quantities, "a member has no row");
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

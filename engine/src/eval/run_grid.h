@@ -6,7 +6,7 @@
 
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 #ifdef TESSERA_PLANT_SLOWDOWN
 inline constexpr int planted_slowdown = TESSERA_PLANT_SLOWDOWN;
@@ -45,4 +45,4 @@ Isa run_grid(const kernel::KernelTable& kernels, const kernel::GridJob<T>& job) 
   return call_grid_kernel(kernels, job);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

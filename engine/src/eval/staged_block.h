@@ -14,7 +14,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The kernels that write lines, chosen by precision.
 template <class T>
@@ -308,4 +308,4 @@ class StagedBlock {
   alignas(cache_line) std::array<std::array<std::uint8_t, Layout::max_samples * lanes>, 2> kinds_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Bytes beyond which streaming stores win: a third of the last-level cache, or eight times a core's second-level one
 /// where that is less. A last-level cache that many cores share is not one call's to fill: with 480 MB of it beside 2
@@ -20,4 +20,4 @@ inline std::size_t streaming_threshold() {
   return bytes;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Reads breakpoints from the first row and the first column of patches [begin, end), then looks at all of them.
@@ -64,4 +64,4 @@ std::optional<Domain> SurfaceMap::domain(std::size_t surface) const {
   return of.domain();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

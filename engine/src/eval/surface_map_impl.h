@@ -5,7 +5,7 @@
 
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class SurfaceMap::Impl {
  public:
@@ -20,4 +20,4 @@ class SurfaceMap::Impl {
   std::size_t patch_count = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Points per task: enough that starting a task costs little, and few enough that threads finish together.
 inline constexpr std::size_t points_per_task = 16384;
@@ -28,4 +28,4 @@ inline void report_run(const Execution& execution, Isa isa, bool streaming) {
   execution.report->streaming = streaming;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

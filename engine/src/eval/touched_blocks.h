@@ -12,7 +12,7 @@
 #include "block/patch_set_impl.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the status of an edit that cannot be made.
 inline Status edit_error(StatusCode code, std::size_t edit, const std::string& why) {
@@ -86,4 +86,4 @@ class TouchedBlocks {
   std::vector<std::size_t> first_points_;  ///< `[edit]`
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -17,7 +17,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Below so many points one thread is faster than waking another.
@@ -185,4 +185,4 @@ template TESSERA_EXPORT Status evaluate(const RuledSurface&, std::span<const dou
 template TESSERA_EXPORT Status evaluate(const RuledSurface&, std::span<const double>, std::span<const double>,
                                         const View3<double>&, const Execution&);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Where one edge of a patch lies in its net and in its grid.
@@ -179,4 +179,4 @@ Status UniformGrid::update(PatchSet::Impl& set, const PatchEdits& edits, const T
   return status;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "eval/touched_blocks.h"
 #include "tessera/evaluate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The grid i / rate_u x j / rate_v over every patch of a set. Positions on a border depend on that border's control
 /// points and the rate along it alone, and not on the direction in which the border runs: two patches that share a
@@ -47,4 +47,4 @@ class UniformGrid {
   std::array<AlignedVector<float>, max_degree + 1> border_weights_u_, border_weights_v_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

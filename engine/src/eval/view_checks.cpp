@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void ViewChecks::add(const Array& array, std::size_t size, std::size_t alignment) {
   if (!error_.ok()) return;
@@ -54,4 +54,4 @@ Status ViewChecks::status() const {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

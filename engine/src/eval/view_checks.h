@@ -10,7 +10,7 @@
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Collects the views of one call, and keeps the first error.
 class ViewChecks {
@@ -55,4 +55,4 @@ class ViewChecks {
   std::size_t count_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double rounding = 1e-12;
@@ -63,4 +63,4 @@ double Arcs::slope(double angle) const {
   return 0.5 * h / (c * c * std::tan(0.5 * h));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Arcs of equal length, at most 90 degrees each, which meet in double knots; at the knots, their parameter is the
 /// angle. Within an arc about m of half-width h, it is m + h tan((angle - m)/2) / tan(h/2): the rational quadratic of
@@ -39,4 +39,4 @@ class Arcs {
   int count_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -19,7 +19,7 @@
 #include "io_occt/cad_file.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::string_view text_mark = "CASCADE Topology V", binary_mark = "Open CASCADE Topology V";
@@ -114,4 +114,4 @@ Result<CadFile> load_brep(const std::string& path) {
   return file;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -92,4 +92,4 @@ CadFile transferred(const XSControl_Reader& reader) {
   return file;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Shapes, and their names in the file. The keys of the maps are the identities of shapes (TShape), independent of
 /// placement.
@@ -61,4 +61,4 @@ Colour colour_of(const Quantity_Color& colour, double alpha);
 /// The key of a shape in the maps; null for a null shape.
 inline const void* identity(const TopoDS_Shape& shape) { return shape.IsNull() ? nullptr : shape.TShape().get(); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

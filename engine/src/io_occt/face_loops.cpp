@@ -23,7 +23,7 @@
 
 #include "io_occt/trim_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -287,4 +287,4 @@ Result<FaceLoops> face_loops(const TopoDS_Face& given, const FaceBox& box, const
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

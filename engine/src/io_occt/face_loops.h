@@ -10,7 +10,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The part of OpenCASCADE's parameters that a face uses, and its tolerance in them.
 struct FaceBox {
@@ -33,4 +33,4 @@ struct FaceLoops {
 Result<FaceLoops> face_loops(const TopoDS_Face& face, const FaceBox& box, const Reparametrization& parameters,
                              const ShapeEdges& edges);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -20,7 +20,7 @@
 
 #include "io_occt/spline_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -223,4 +223,4 @@ Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/nurbs_surface.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Maps OpenCASCADE's parameters of a surface to ours.
 struct Reparametrization {
@@ -36,4 +36,4 @@ opencascade::handle<Geom_Surface> bare_surface(opencascade::handle<Geom_Surface>
 /// of BSplineSurface, unsupported. May throw Standard_Failure.
 Result<FaceSurface> face_surface(const opencascade::handle<Geom_Surface>& surface, const Domain& box);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

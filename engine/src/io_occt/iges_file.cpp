@@ -30,7 +30,7 @@
 #include "io_occt/text_encoding.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -153,4 +153,4 @@ Result<CadFile> load_iges(const std::string& path) {
   return file;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The letter of a line's section; 0 for a line that is too short.
@@ -34,4 +34,4 @@ Status check_iges_sections(const std::string& path) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

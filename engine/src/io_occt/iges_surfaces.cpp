@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The characters that separate parameters and end records: the first two parameters of section G, as "1H,,1H;,", or
@@ -108,4 +108,4 @@ std::vector<IgesSurface> iges_surfaces(std::string_view text) {
   return surfaces;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A record of type 128: 128, K1, K2, M1, M2, five flags, the knots, the weights, the points, and the four ends of the
 /// ranges (IGES 5.3, sec. 4.23).
@@ -32,4 +32,4 @@ struct IgesSurface {
 /// Lists the surfaces of a file. Text that is none is left to OpenCASCADE.
 std::vector<IgesSurface> iges_surfaces(std::string_view text);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

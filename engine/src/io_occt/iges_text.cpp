@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "io_occt/iges_surfaces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status check_weights(const IgesSurface& surface, const std::string& path) {
@@ -79,4 +79,4 @@ std::optional<std::string> with_iges_ranges(std::string_view text) {
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

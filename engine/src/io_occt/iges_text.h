@@ -7,7 +7,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks that the weights of all entities of type 128 are positive. If one is not, OpenCASCADE silently drops all
 /// weights of that surface and reads another one. Text that is not a number is left to OpenCASCADE. Messages begin with
@@ -18,4 +18,4 @@ Status check_iges_weights(std::string_view text, const std::string& path);
 /// a surface without its ranges. Empty if none is left out.
 std::optional<std::string> with_iges_ranges(std::string_view text);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "io_occt/shape_model.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 struct Loader {
@@ -51,4 +51,4 @@ Result<Model> load_model(std::string_view format, const std::string& path) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -19,8 +19,7 @@
 #include "io/cad/model_bytes.h"
 #include "io_occt/load_model.h"
 
-namespace tessera::inline abi_0_1 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace {
 
 constexpr const char* usage =
     "tessera-cad-reader FORMAT FILE PROCESS\n\n"
@@ -88,8 +87,7 @@ CadReaderExit serve(const char* format, const char* path, pid_t server) {
   return write_all(output, {head, sizeof head}) && write_all(output, bytes) ? cad_reader_done : cad_reader_failed;
 }
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1
+}}}  // namespace tessera::abi_0_1
 
 int main(int count, char** words) {
   using namespace tessera;

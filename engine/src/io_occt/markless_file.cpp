@@ -7,7 +7,7 @@
 
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::string_view mark = "\xEF\xBB\xBF";
@@ -33,4 +33,4 @@ Result<MarklessFile> MarklessFile::make(const std::string& path) {
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "io_occt/memory_file.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A file without the byte order mark that an editor may have put before it. OpenCASCADE would take the mark for text,
 /// and in IGES it moves the columns of the first line. path() can be opened during the object's lifetime.
@@ -22,4 +22,4 @@ class MarklessFile {
   MemoryFile copy_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

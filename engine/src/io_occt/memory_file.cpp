@@ -8,7 +8,7 @@
 
 #include "io/file/file.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Result<MemoryFile> MemoryFile::make(std::string_view bytes, const std::string& original) {
   MemoryFile file;
@@ -23,4 +23,4 @@ Result<MemoryFile> MemoryFile::make(std::string_view bytes, const std::string& o
   return file;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

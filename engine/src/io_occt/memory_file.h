@@ -7,7 +7,7 @@
 #include "io/file/descriptor.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A file in memory. path() can be opened during the object's lifetime.
 class MemoryFile {
@@ -22,4 +22,4 @@ class MemoryFile {
   Descriptor copy_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

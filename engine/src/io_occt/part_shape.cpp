@@ -17,7 +17,7 @@
 #include "io_occt/shape_edges.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -216,4 +216,4 @@ Shape part_shape(const CadFile& file, const PlacedPart& placed, Shortcomings& sh
   return std::move(faces).finish(own != file.names.end() && !own->second.empty() ? &own->second : placed.above);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Parts of a file that the model lacks or changes.
 struct Shortcomings {
@@ -25,4 +25,4 @@ struct Shortcomings {
 /// part, if that has one. May throw Standard_Failure.
 Shape part_shape(const CadFile& file, const PlacedPart& placed, Shortcomings& shortcomings);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

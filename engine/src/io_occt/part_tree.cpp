@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Affine affine(const gp_Trsf& map) {
   const auto column = [&](int k) { return Vec3{map.Value(1, k), map.Value(2, k), map.Value(3, k)}; };
@@ -73,4 +73,4 @@ void PartTree::add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_paren
     add_parts(in_place.Value(), in_shape.Value(), shape.Location(), above);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 
 #include "io_occt/cad_file.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Affine affine(const gp_Trsf& map);
 
@@ -51,4 +51,4 @@ class PartTree {
   std::vector<PlacedPart> parts_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 
 #include "io_occt/spline_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -190,4 +190,4 @@ void ShapeEdges::give_to(Shape& shape) && {
   shape.edges = std::move(edges_);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "io_occt/trim_curve.h"
 #include "tessera/model.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The edges of a shape's faces in the order of TopExp::MapShapes, and their vertices. An edge is the same where shape
 /// and location are.
@@ -41,4 +41,4 @@ class ShapeEdges {
   std::vector<Parameter> parameters_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "io_occt/part_tree.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Gathers parts, their places, and warnings.
@@ -102,4 +102,4 @@ Result<Model> model_of(const CadFile& file, const std::string& path) {
   return parts.finish();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,10 +7,10 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Makes the model that tessera/cad.h describes, face by face in the order of the shape. Messages begin with `path`.
 /// Errors: parse_error; if no face remains, the error of the first one.
 Result<Model> model_of(const CadFile& file, const std::string& path);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline Vec3 vec3(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
@@ -55,4 +55,4 @@ SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const 
 /// May throw Standard_Failure.
 Result<SplineLine> spline_line(const opencascade::handle<Geom_Curve>& curve, const Interval& range);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

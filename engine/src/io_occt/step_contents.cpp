@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Shapes that have no surfaces of their own, or whose surfaces OpenCASCADE does not make.
@@ -132,4 +132,4 @@ std::string contents_of(const StepKinds& kinds) {
   return list;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The number of entities of each kind, such as "ADVANCED_FACE". An entity of several kinds counts for each.
 using StepKinds = std::map<std::string, std::size_t, std::less<>>;
@@ -16,4 +16,4 @@ std::string unread_shapes(const StepKinds& kinds);
 /// Says what a file without surfaces holds: its shapes as above, or else its most frequent kinds.
 std::string contents_of(const StepKinds& kinds);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -21,7 +21,7 @@
 #include "io_occt/text_encoding.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -102,4 +102,4 @@ Result<CadFile> load_step(const std::string& path) {
   return file;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -34,7 +34,7 @@
 #include "io_occt/part_tree.h"
 #include "io_occt/spline_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -164,4 +164,4 @@ void collect_moves(const XSControl_Reader& reader, CadFile& file) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

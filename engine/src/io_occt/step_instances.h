@@ -5,7 +5,7 @@
 
 #include "io_occt/cad_file.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Collects the colours of solids, shells and faces, wherever they stand and at single instances. Colours of edges are
 /// left out.
@@ -14,4 +14,4 @@ void collect_colours(const XSControl_Reader& reader, CadFile& file);
 /// Collects the scales and mirrors of mapped items: OpenCASCADE places these rigidly.
 void collect_moves(const XSControl_Reader& reader, CadFile& file);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 unsigned byte(std::string_view text, std::size_t k) {
@@ -68,4 +68,4 @@ const char* name_of(TextEncoding encoding) {
   return encoding == TextEncoding::utf8 ? "UTF-8" : encoding == TextEncoding::gbk ? "GBK" : "Latin-1";
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

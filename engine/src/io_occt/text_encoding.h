@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 enum class TextEncoding { utf8, latin1, gbk };
 
@@ -18,4 +18,4 @@ std::string to_utf8(const std::string& text, TextEncoding encoding);
 /// "GBK", as messages name it.
 const char* name_of(TextEncoding encoding);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "convert/fit/cubic_fit.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
@@ -214,4 +214,4 @@ Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& 
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/curve.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A curve, and how its parameter follows from OpenCASCADE's.
 struct TrimCurve {
@@ -28,4 +28,4 @@ opencascade::handle<Geom2d_Curve> bare_curve(opencascade::handle<Geom2d_Curve> c
 Result<TrimCurve> trim_curve(const opencascade::handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
                              const Reparametrization& parameters, double tolerance);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

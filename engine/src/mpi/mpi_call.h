@@ -7,7 +7,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns "MPI_Call: MPI's own words" for an error code of MPI; success for MPI_SUCCESS.
 inline Status mpi_status(const char* call, int code) {
@@ -56,4 +56,4 @@ class OwnCommunicator {
   MPI_Comm value_ = MPI_COMM_NULL;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

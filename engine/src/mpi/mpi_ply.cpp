@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/mpi.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t bytes_at_once = std::size_t{8} << 20;
@@ -68,4 +68,4 @@ Status write_ply_piece(MPI_Comm communicator, const std::filesystem::path& file,
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

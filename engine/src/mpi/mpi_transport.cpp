@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/mpi.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 extern "C" void largest_doubles(void* in, void* in_out, int* count, MPI_Datatype*) {
@@ -184,4 +184,4 @@ Result<std::unique_ptr<Transport>> make_mpi_transport(MPI_Comm communicator, std
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 #include "tessera/guard.h"
 #include "tessera/mpi.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Memory of rank 0 that all ranks reach.
 class SharedCounter::Window {
@@ -65,4 +65,4 @@ Result<std::uint64_t> SharedCounter::next() {
   return guarded([&] { return window_->next(); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Turns the progress of a call's loops, each from 0 to 1, into one rise from 0 to 1. Threads: a loop must report one
 /// call at a time, and loops must not overlap.
@@ -58,4 +58,4 @@ class CallProgress {
   double last_ = 0, reported_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

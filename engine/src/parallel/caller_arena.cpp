@@ -2,7 +2,7 @@
 
 #include <tbb/task_arena.h>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 int arena_threads() { return tbb::this_task_arena::max_concurrency(); }
 
@@ -11,4 +11,4 @@ void in_own_arena(int threads, FunctionRef<void()> work) {
   arena.execute([&] { work(); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include "base/function_ref.h"
 #include "base/internal_export.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns how many threads the caller's arena has.
 TESSERA_INTERNAL_EXPORT int arena_threads();
@@ -13,4 +13,4 @@ TESSERA_INTERNAL_EXPORT int arena_threads();
 /// on_threads(), work() may block. Exceptions of work() propagate; throws std::bad_alloc.
 TESSERA_INTERNAL_EXPORT void in_own_arena(int threads, FunctionRef<void()> work);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class LeastIndex {
  public:
@@ -21,4 +21,4 @@ class LeastIndex {
   std::atomic<std::size_t> least_ = none;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

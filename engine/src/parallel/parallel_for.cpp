@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Counts pieces and reports to the caller, one call at a time and about a hundred times in all.
@@ -61,4 +61,4 @@ Status parallel_for(std::size_t count, std::size_t grain, const Execution& execu
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

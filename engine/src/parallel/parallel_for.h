@@ -8,7 +8,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Calls body(begin, end) for pieces of at most `grain` elements that together cover [0, count) once. Runs in the
 /// caller's arena; a single piece runs on the calling thread. The pieces are the same for any number of threads. Sets
@@ -16,4 +16,4 @@ namespace tessera::inline abi_0_1 {
 TESSERA_INTERNAL_EXPORT Status parallel_for(std::size_t count, std::size_t grain, const Execution& execution,
                                             FunctionRef<void(std::size_t, std::size_t)> body);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

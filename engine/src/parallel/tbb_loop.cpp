@@ -12,7 +12,7 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Tells the thread sanitizer what oneTBB guarantees: the call happens before its pieces, and these before its return.
@@ -78,4 +78,4 @@ void without_other_tasks(FunctionRef<void()> call) {
   tbb::this_task_arena::isolate([&] { call(); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "base/function_ref.h"
 #include "base/internal_export.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Calls body(piece) once for each piece in [0, pieces), in the caller's arena, in any order. Exceptions of the body
 /// propagate. All pieces run, even if the caller's own task group is cancelled meanwhile.
@@ -39,4 +39,4 @@ void on_threads(int threads, FunctionRef<void()> work);
 /// Calls a function of the user's. If it starts tasks and waits for them, this thread runs none of ours meanwhile.
 void without_other_tasks(FunctionRef<void()> call);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Keeps the workspaces that tasks have used for those that come later, so that there are only as many as tasks at once.
 template <class T>
@@ -50,4 +50,4 @@ class Workspaces {
   std::vector<std::unique_ptr<T>> free_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

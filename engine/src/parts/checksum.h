@@ -7,7 +7,7 @@
 #include <cstring>
 #include <span>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline std::uint64_t mixed(std::uint64_t h, std::uint64_t word) {
   return std::rotl((h ^ word) * 0x9E3779B97F4A7C15u, 29) * 0xBF58476D1CE4E5B9u;
@@ -26,4 +26,4 @@ inline std::uint64_t checksum(std::span<const std::byte> bytes) {
   return mixed(mixed(h, word), 0);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/io.h"
 #include "tessera/transport.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ Result<std::unique_ptr<Transport>> make_job_transport(const JobFolder& options, 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the larger number. NaN counts as the largest, whatever its bits, and 0 is larger than -0. So the largest of
 /// several numbers has the same bits in any order.
@@ -14,4 +14,4 @@ inline double larger_of(double a, double b) {
   return a > b ? a : b;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 #include "parts/checksum.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ Result<std::optional<Message>> read_message(const fs::path& path, const MessageF
   return std::optional(std::move(message));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/status.h"
 #include "tessera/transport.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The messages that a file holds. All numbers are in the machine's byte order.
 struct MessageFileKey {
@@ -31,4 +31,4 @@ Status write_messages(const std::filesystem::path& file, const MessageFileKey& k
 Result<std::optional<Message>> read_message(const std::filesystem::path& file, const MessageFileKey& key,
                                             std::size_t to);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

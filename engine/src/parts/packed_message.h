@@ -7,7 +7,7 @@
 
 #include "tessera/transport.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 template <class T>
 void append(Message& message, const T& value) {
@@ -35,4 +35,4 @@ std::vector<T> read_all(const Message& message) {
   return values;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "parts/packed_message.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::uint64_t max_rays = std::uint64_t{1} << 31, max_patches = std::uint64_t{1} << 32;
@@ -179,4 +179,4 @@ Result<std::vector<Hit>> closest_in_parts(Transport& transport, const RayScene& 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status check_local(const TessellationOptions& options) {
@@ -131,4 +131,4 @@ Result<PartSums> sum_parts(const Result<PartMesh>& own, const TessellationOption
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns "part 3: ..." for an error of part 3, unless its message names a part already, as errors do that parts were
 /// told of.
@@ -17,4 +17,4 @@ namespace tessera::inline abi_0_1 {
   return Status(status.code(), "part " + std::to_string(part) + ": " + text, status.index());
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

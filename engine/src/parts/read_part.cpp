@@ -13,7 +13,7 @@
 #include "tessera/guard.h"
 #include "tessera/part_mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// A box of floats that holds the box of a surface.
@@ -214,4 +214,4 @@ Result<ModelPart> load_part(const SurfaceSource& source, const PartOutline& outl
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

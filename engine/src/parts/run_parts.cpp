@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/transport.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The end of a part that takes turns with the others.
@@ -62,4 +62,4 @@ Status run_parts(std::size_t part_count, const std::function<Status(Transport&)>
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "parts/part_status.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 template <class T>
@@ -145,4 +145,4 @@ Status Transport::agree(const Status& own) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

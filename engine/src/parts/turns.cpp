@@ -5,7 +5,7 @@
 #include "parts/part_status.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void Turns::start(std::size_t count, Status fault) {
   const std::lock_guard lock(mutex_);
@@ -111,4 +111,4 @@ Result<Turns::SharedMessages> Turns::share(std::size_t part, Message message) {
   return SharedMessages(all);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

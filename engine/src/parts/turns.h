@@ -12,7 +12,7 @@
 #include "tessera/status.h"
 #include "tessera/transport.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Lets one part run at a time. A part runs until it meets the others or ends; then the next one runs that can. When
 /// all have met, each takes what others left for it.
@@ -71,4 +71,4 @@ class Turns {
   Status fault_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "surface/spline/spline_lines.h"
 #include "tessera/curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Keeps the extractions of the last few knot vectors: the curves of a file often have equal ones.
 class CurveExtractions {
@@ -32,4 +32,4 @@ class CurveExtractions {
   std::vector<Known> known_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The lines of one direction, strictly increasing, at least two: the first and the last are sides of the domain.
 struct CutAxis {
@@ -36,4 +36,4 @@ struct CutLines {
   ParameterPoint snapped(const ParameterPoint& p) const { return {u.snapped(p.u), v.snapped(p.v)}; }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/convert.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double tolerance = 1e-9;  // of the ranges
@@ -107,4 +107,4 @@ Result<std::vector<TrimLoop>> grid_loops(std::span<const TrimLoop> loops, const 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

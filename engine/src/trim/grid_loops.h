@@ -8,7 +8,7 @@
 #include "tessera/status.h"
 #include "tessera/trim_loop.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns loops of a quadric in the parameters of to_bezier(piece), of which `loops` has the canonical ones. Straight
 /// lines along a parameter remain so, unless the loop names edges, along which each point must keep its parameter. All
@@ -16,4 +16,4 @@ namespace tessera::inline abi_0_1 {
 /// Errors: unsupported (a loop runs over more than 64 times the ranges of the piece; index = the loop), non_finite.
 Result<std::vector<TrimLoop>> grid_loops(std::span<const TrimLoop> loops, const QuadricPiece& piece);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "convert/spline/curve_pieces.h"
 #include "trim/monotone_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double max_coordinate = 1e100;
@@ -315,4 +315,4 @@ Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const 
   return LoopBuilder(loop, index, lines, extractions).build();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "trim/cut_lines.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A loop as a closed chain of pieces. On a periodic surface, a piece that ends on one side of the domain may be
 /// followed by one that starts at the same place of the opposite side.
@@ -31,4 +31,4 @@ struct LoopPieces {
 Result<LoopPieces> loop_pieces(const TrimLoop& loop, std::uint32_t index, const CutLines& lines,
                                CurveExtractions& extractions);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

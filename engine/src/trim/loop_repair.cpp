@@ -12,7 +12,7 @@
 #include "trim/monotone_pieces.h"
 #include "trim/retraced.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Coordinate = double ParameterPoint::*;
@@ -265,4 +265,4 @@ Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLin
   return LoopRepair(loops, lines, shared ? *shared : own).repair();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "trim/cut_lines.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Pieces in which an even number of ends meet at every point, so that the parity of crossings is a property of a
 /// point alone.
@@ -25,4 +25,4 @@ struct RepairedLoops {
 Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines,
                                    CurveExtractions* shared = nullptr);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

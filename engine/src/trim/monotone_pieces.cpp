@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double ulp = 0x1p-52;
@@ -220,4 +220,4 @@ void move_ends(TrimPiece& piece, const ParameterPoint& start, const ParameterPoi
   piece.exact_line = false;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

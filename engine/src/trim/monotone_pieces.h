@@ -6,7 +6,7 @@
 #include "trim/cut_lines.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Appends the pieces of a curve, in its direction: cut where u or v has an extremum and where it crosses a line.
 /// Pieces that are points are left out.
@@ -20,4 +20,4 @@ void append_monotone_pieces(PlaneBezier curve, const ParameterPoint& error, cons
 /// Moves the ends of a piece, and as much of the rest as stays not monotone then; its error grows by as much.
 void move_ends(TrimPiece& piece, const ParameterPoint& start, const ParameterPoint& end);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void PieceSamples::set(const TrimPiece& piece, const Domain& rectangle, const ParameterPoint& step) {
   constexpr std::size_t most = 1024;
@@ -63,4 +63,4 @@ std::optional<SampleRange> PieceSamples::within(double ParameterPoint::*x, doubl
                      among.first + static_cast<std::size_t>(last - begin)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/geometry.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A closed interval of samples.
 struct SampleRange {
@@ -41,4 +41,4 @@ class PieceSamples {
   std::vector<ParameterPoint> points_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

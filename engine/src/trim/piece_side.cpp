@@ -5,7 +5,7 @@
 
 #include "basis/exact_sign.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 bool has_height(const TrimPiece& piece, double v) { return piece.lower_v() <= v && v < piece.upper_v(); }
@@ -100,4 +100,4 @@ PieceSide side_of(const TrimPiece& piece, const ParameterPoint& q) {
   return piece.exact_line ? side_of_line(piece, q) : SideSearch(piece, q).run();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Where a point lies seen from a piece.
 enum class PieceSide : std::uint8_t {
@@ -24,4 +24,4 @@ ParameterPoint reach(const TrimPiece& piece);
 /// the right of q and below, where the curve rises, proves that it passes q's height on the right.
 PieceSide side_of(const TrimPiece& piece, const ParameterPoint& q);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

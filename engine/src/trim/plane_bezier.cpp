@@ -7,7 +7,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The products u w, v w and the weight w of a control point.
@@ -192,4 +192,4 @@ void append_extrema(const PlaneBezier& curve, int along, std::vector<double>& pa
   append_roots(std::move(c), noise, 0, 1, 26, parameters);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

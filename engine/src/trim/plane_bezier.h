@@ -11,7 +11,7 @@
 #include "tessera/geometry.h"
 #include "trim/short_list.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A Bezier curve of degree 1 to max_degree over [0, 1]; rational if it has weights, which are positive.
 struct PlaneBezier {
@@ -77,4 +77,4 @@ inline ParameterPoint relative_point(const PlaneBezier& curve, const ParameterPo
 /// See relative_point().
 inline double plane_error(int degree) { return (6 * degree + 8) * 0x1p-53; }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "base/infinity.h"
 #include "trim/piece_samples.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t crowded = 8;  ///< a cell with more entries gets a finer grid
@@ -294,4 +294,4 @@ RegionCells RegionCells::make(const std::vector<TrimPiece>& pieces, const Domain
   return CellsBuilder(pieces, domain).build(domain, starts_inside);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 #include "trim/piece_side.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A piece in a cell. The part of the piece within the cell lies in the strip lower <= a u + b v + c <= upper, which is
 /// as much wider as its reach and rounding take; a <= 0, so that points with larger values see it on their right.
@@ -142,4 +142,4 @@ class RegionCells {
   std::vector<CellEntry> entries_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 class RetracedPairs {
@@ -96,4 +96,4 @@ std::size_t drop_retraced(std::vector<TrimPiece>& pieces, double snap_u, double 
   return RetracedPairs(pieces, snap_u, snap_v).drop();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

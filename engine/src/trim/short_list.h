@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A list of numbers or points: up to `room` of them in place, more on the heap. A list that was moved from may only be
 /// assigned or destroyed.
@@ -47,4 +47,4 @@ class ShortList {
   std::size_t size_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/curve.h"
 #include "trim/plane_bezier.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A Bezier curve whose control polygon is monotone in u and in v, hence so is the curve (variation diminution). It
 /// crosses no line between patches, but may end on one or run along one. Its ends are the same bits as those of its
@@ -41,4 +41,4 @@ inline TrimPiece line_piece(const ParameterPoint& from, const ParameterPoint& to
   return piece;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

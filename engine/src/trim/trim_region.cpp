@@ -12,7 +12,7 @@
 #include "trim/loop_repair.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double max_snap = 1e-3;
@@ -199,4 +199,4 @@ ParameterPoint TrimRegion::band() const { return impl_->band; }
 std::size_t TrimRegion::piece_count() const { return impl_->pieces.size(); }
 std::span<const LoopRemark> TrimRegion::remarks() const { return impl_->remarks; }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

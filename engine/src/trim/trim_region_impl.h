@@ -12,7 +12,7 @@
 #include "trim/region_cells.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class TrimRegion::Impl {
  public:
@@ -53,4 +53,4 @@ class TrimRegion::Impl {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,8 +14,7 @@
 #include "base/aligned.h"
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::kernel {
-namespace {
+namespace tessera::kernel { namespace {
 
 using Random = std::mt19937_64;
 
@@ -324,8 +323,7 @@ int run(const char* isa) {
   return 2;
 }
 
-}  // namespace
-}  // namespace tessera::kernel
+}}  // namespace tessera::kernel
 
 int main(int count, char** arguments) {
   if (count != 2) {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An interval of real numbers, from lower() to upper(). The result of every operation contains the result for every
 /// choice of numbers, whatever the rounding:
@@ -181,5 +181,5 @@ class IntervalNumber {
   double lower_, upper_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -6,7 +6,7 @@
 #include <utility>
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A constant T that copies share. The default value T{} takes no memory of its own. Converts to T; its members are
 /// reached by -> and *.
@@ -47,5 +47,5 @@ class Shared {
   std::shared_ptr<const T> value_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -7,7 +7,7 @@
 #include <utility>
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A handle on memory that is freed with its last handle. Unlike std::shared_ptr, one change of the count makes or
 /// releases many handles: a surface has tens of thousands of pieces, and an atomic operation for each would cost as
@@ -102,5 +102,5 @@ class SharedMemory {
   };
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

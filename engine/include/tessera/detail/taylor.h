@@ -10,7 +10,7 @@
 #include "tessera/detail/interval_number.h"
 
 #pragma GCC visibility push(default)
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A truncated Taylor series sum c_ij (u - u0)^i (v - v0)^j, i + j <= Order, of a function of one or two Variables.
 /// c_ij is the function's derivative of order (i,j) at (u0,v0) over i! j!.
@@ -297,5 +297,5 @@ class Taylor {
   std::array<Scalar, size> c_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

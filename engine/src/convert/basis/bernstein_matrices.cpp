@@ -2,7 +2,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 // V'_i = sum_j C(m,j) C(n-m,i-j) / C(n,i) V_j is the repeated step V'_i = i/(m+1) V_{i-1} + (1 - i/(m+1)) V_i (Farin,
 // Curves and Surfaces for CAGD, 5th ed., sec. 6.1). Numerators and denominators are whole numbers.
@@ -35,4 +35,4 @@ Matrix evaluation_matrix(int n, double t) {
   return matrix;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 
 #include "basis/small_matrix.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Raises degree m to degree n >= m.
 Matrix elevation_matrix(int m, int n);
@@ -13,4 +13,4 @@ Matrix restriction_matrix(int n, double a, double b);
 /// Evaluates at t: one row, B_{j,n}(t).
 Matrix evaluation_matrix(int n, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

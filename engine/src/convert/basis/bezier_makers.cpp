@@ -5,7 +5,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Checks what a net needs before it is laid out; BezierPatch checks the rest.
@@ -71,4 +71,4 @@ Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01,
   return BezierPatch::polynomial(1, 1, std::array{r00, r01, r10, r11});
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

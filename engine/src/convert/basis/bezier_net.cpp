@@ -5,7 +5,7 @@
 
 #include "surface/net/patch_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The point and weight that one row of the matrix makes of one column of the net.
@@ -105,4 +105,4 @@ BezierNet transpose(const BezierNet& net) {
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "convert/basis/bernstein_matrices.h"
 #include "tessera/bezier_operations.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A net of rows * columns points [i][j], i along u, with as many weights or none. A curve is one row.
 struct BezierNet {
@@ -40,4 +40,4 @@ BezierPolygon elevated(const BezierPolygon& curve, int degree);
 /// Returns the net with u and v exchanged.
 BezierNet transpose(const BezierNet& net);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status check_parameter(double t, const char* name) {
@@ -189,4 +189,4 @@ Result<BezierPatch> reverse_v(const BezierPatch& patch) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 #include "basis/double_double.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 using PolarForms = std::array<DoubleDouble, max_degree + 1>;
 
@@ -46,4 +46,4 @@ inline std::vector<long double> bernstein_coefficients(std::span<const double> c
   return values;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

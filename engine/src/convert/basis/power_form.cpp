@@ -5,7 +5,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Transforms one direction: `count` curves of the given degree. Point i of a curve is the `width` values at curve *
@@ -35,4 +35,4 @@ void power_coefficients(int degree_u, int degree_v, int components, std::span<do
   transform_curves(degree_v, net.data(), width, width, static_cast<std::size_t>(degree_u + 1), row);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Turns a Bernstein net [i][j][component] in place into the coefficients of u^i v^j. Rational patches: homogeneous
 /// components. net.size() == (degree_u + 1) * (degree_v + 1) * components.
@@ -14,4 +14,4 @@ namespace tessera::inline abi_0_1 {
 /// units in the last place at degrees 3 / 5 / 7. Make the net relative to a near origin first.
 void power_coefficients(int degree_u, int degree_v, int components, std::span<double> net);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

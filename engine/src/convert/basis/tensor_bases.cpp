@@ -6,7 +6,7 @@
 #include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Matrix to_bernstein(const BasisMatrix& basis) {
@@ -64,4 +64,4 @@ Result<PatchGrid> to_bezier(const TensorPatch& patch) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

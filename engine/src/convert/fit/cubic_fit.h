@@ -8,7 +8,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A place of a curve: its parameter, its point, and the derivative by the parameter.
 struct CurveSample {
@@ -68,4 +68,4 @@ class CubicFit {
   std::vector<double> knots_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -17,7 +17,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The share of the tolerance for interpolation. The rest is for rounding and for errors between samples.
@@ -228,4 +228,4 @@ Result<PatchGrid> to_bezier(const ParametricSurface& surface, const FitOptions& 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "base/safe_length.h"
 #include "basis/chebyshev_lobatto.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -103,4 +103,4 @@ Result<CellError> SampledError::operator()(const Domain& cell) {
   return error;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

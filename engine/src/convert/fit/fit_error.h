@@ -14,7 +14,7 @@
 #include "convert/fit/tensor_refinement.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The proven error, by bounds of the derivatives of order n + 1. Without such a bound, the cell should be halved while
 /// it is longer than a 64th of the domain; then the error is `unsupported`.
@@ -51,4 +51,4 @@ class SampledError {
   Grid values_, along_u_;           // f and Iu f, [a][b]
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

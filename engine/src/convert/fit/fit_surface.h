@@ -12,7 +12,7 @@
 #include "tessera/convert.h"
 #include "tessera/parametric_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Bounds of derivatives, as in SurfaceFunctions; empty if there are none.
 using DerivativeBounds = std::function<std::array<double, 2>(const Domain& part, int k)>;
@@ -52,4 +52,4 @@ Result<PatchGrid> fitted(const Surface& surface, DerivativeBounds bounds, const 
   return grid;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The intervals between breakpoints of one direction.
@@ -139,4 +139,4 @@ Result<TensorBreaks> refine(std::vector<double> u, std::vector<double> v, const 
   return Refinement(std::move(u), std::move(v), limits).run(error);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The error on one cell, and the part of it that halving the cell in each direction reduces.
 struct CellError {
@@ -35,4 +35,4 @@ struct TensorBreaks {
 Result<TensorBreaks> refine(std::vector<double> u, std::vector<double> v, const RefinementLimits& limits,
                             CellErrorFunction error);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 // the maximum from below, and pieces that may still hold the maximum are halved. The hull converges with the square of
 // the length (Farin, sec. 6.9).
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_halvings = 40;
@@ -86,4 +86,4 @@ Maximum largest_angle(const VectorRatio& ratio, double floor) {
   return maximum(ratio, floor, upper, [](const Vec3& p, double x) { return std::atan2(length(p), x); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

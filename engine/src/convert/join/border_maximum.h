@@ -4,7 +4,7 @@
 #include "basis/bernstein_net.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A vector curve and a scalar curve, both on [0,1].
 struct VectorRatio {
@@ -23,4 +23,4 @@ Maximum largest_length(const VectorRatio& ratio, double floor);
 /// Bounds the maximum of the angle atan2(|numerator|, denominator), for numerator = a x b and denominator = a . b.
 Maximum largest_angle(const VectorRatio& ratio, double floor);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

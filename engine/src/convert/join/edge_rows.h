@@ -9,7 +9,7 @@
 #include "tessera/bezier_patch.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline bool crosses_u(Edge edge) { return edge == Edge::u0 || edge == Edge::u1; }
 inline bool is_edge(Edge edge) { return crosses_u(edge) || edge == Edge::v0 || edge == Edge::v1; }
@@ -54,4 +54,4 @@ inline Status check_side(const JoinSide& side, const char* which) {
           std::string("the domain of patch ") + which + " is empty or reversed: " + text(width) + " x " + text(height)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns a row of control points along an edge, raised to `degree`; with weights if the patch is rational.
@@ -81,4 +81,4 @@ Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k, bo
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

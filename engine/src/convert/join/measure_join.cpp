@@ -14,7 +14,7 @@
 // for CAGD, 5th ed., sec. 17.2). Each side uses its own border tangent, so that gaps within tolerance do no harm: the
 // quotient of (p_c x p_b) x (q_c x q_b) and (p_c x p_b) . (q_c x q_b) is the tangent of the angle between the normals.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Scalars = BernsteinNet<double>;
@@ -199,4 +199,4 @@ Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const Join
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "surface/net/homogeneous.h"
 #include "tessera/convert.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// A polynomial on [0,1] by its Bernstein coefficients. Long double, because the surface's points are rounded once, at
@@ -209,4 +209,4 @@ Result<BlendedLine> blended_line(const Curve& first, const Curve& second, const 
   return Status(StatusCode::unsupported_degree, message);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/coons_patch.h"
 #include "tessera/curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The line's lists. Element k * degree + i belongs to Bezier point i of piece k; neighbours share their ends.
 struct BlendedLine {
@@ -27,4 +27,4 @@ struct BlendedLine {
 Result<BlendedLine> blended_line(const Curve& first, const Curve& second, const Blend* blend,
                                  const std::string& direction);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double Vec3::*components[] = {&Vec3::x, &Vec3::y, &Vec3::z};
@@ -128,4 +128,4 @@ Result<PatchGrid> to_bezier(const CoonsPatch& patch, const FitOptions& options) 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/status.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 double height(const ExplicitPolynomial& surface, const PolarForms& x, const PolarForms& y) {
@@ -42,4 +42,4 @@ Result<PatchGrid> to_bezier(const ExplicitPolynomial& surface) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

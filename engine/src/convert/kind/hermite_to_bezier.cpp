@@ -3,7 +3,7 @@
 #include "tessera/hermite_patch.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Vec3 divided(const Vec3& vector, double by) { return {vector.x / by, vector.y / by, vector.z / by}; }
@@ -61,4 +61,4 @@ Result<PatchGrid> to_bezier(const HermiteNetwork& network) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

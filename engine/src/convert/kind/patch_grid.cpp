@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns the interval that holds t. A breakpoint belongs to the interval on its right; the end, to the last one.
@@ -109,4 +109,4 @@ Result<PatchGrid> transform(const PatchGrid& grid, const Affine& map) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

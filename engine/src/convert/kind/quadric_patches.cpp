@@ -12,7 +12,7 @@
 // ed., sec. 12.2 to 12.4). The middle point of a circle is where the end tangents meet, and w is the cosine of half the
 // arc. A hyperbola uses cosh likewise; a parabola has w = 1.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Control values of one Bezier segment of a profile; their points are not premultiplied by the weights.
@@ -95,4 +95,4 @@ Result<PatchGrid> to_bezier(const QuadricPiece& piece) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Converts exactly: over one denominator the points of both curves are the rows of a net of degree 1.
@@ -60,4 +60,4 @@ Result<PatchGrid> to_bezier(const RuledSurface& surface, const FitOptions& optio
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

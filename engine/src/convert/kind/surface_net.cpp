@@ -6,7 +6,7 @@
 #include "surface/net/patch_pieces.h"
 #include "surface/net/validate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 SurfaceNet::SurfaceNet(int m, std::vector<double> along_u, int n, std::vector<double> along_v, bool rational)
     : degree_u(m), degree_v(n), breaks_u(std::move(along_u)), breaks_v(std::move(along_v)) {
@@ -46,4 +46,4 @@ SurfaceNet transposed(const SurfaceNet& net) {
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

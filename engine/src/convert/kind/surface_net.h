@@ -5,7 +5,7 @@
 
 #include "tessera/convert.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A net of (count_u degree_u + 1) x (count_v degree_v + 1) points [i][j], i along u, over count_u x count_v patches,
 /// with as many weights or none.
@@ -29,4 +29,4 @@ struct SurfaceNet {
 /// Returns the net with u and v exchanged.
 SurfaceNet transposed(const SurfaceNet& net);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options) {
   return std::visit(Overloaded{
@@ -19,4 +19,4 @@ Result<PatchGrid> to_bezier(const Surface& surface, const FitOptions& options) {
                     surface);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Writes the patches strip by strip, in parallel, and returns the box of their control points.
@@ -92,4 +92,4 @@ Result<PatchRange> touched_patches(const BSplineSurface& surface, std::size_t i,
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,9 +4,9 @@
 #include "convert/spline/extraction.h"
 #include "tessera/convert.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the pieces of to_bezier(curve). `extraction`: that of the curve's knots and domain.
 BezierPieces bezier_pieces(const Curve& curve, const Extraction& extraction);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

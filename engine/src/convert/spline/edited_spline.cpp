@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 EditedSpline::EditedSpline(const BSplineSurface& surface)
     : surface_(surface),
@@ -96,4 +96,4 @@ void EditedSpline::convert_row(std::size_t a, Strip& strip, std::uint32_t* patch
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 
 #include "convert/spline/spline_strips.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Converts the patches that moved control points act on, to the same bits as to_bezier(). Holds memory for all patches
 /// of the surface, so that repeated conversions allocate nothing.
@@ -56,4 +56,4 @@ class EditedSpline {
   bool is_known_ = false;                   ///< whether rows_ holds the points of the last move()
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

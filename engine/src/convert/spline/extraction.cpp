@@ -5,7 +5,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Blossom = std::array<long double, max_degree + 1>;
@@ -43,4 +43,4 @@ Extraction make_extraction(const KnotLine& line) {
   return extraction;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

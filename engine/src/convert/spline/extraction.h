@@ -8,7 +8,7 @@
 
 #include "basis/knots.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The operator of one direction. Row r = span * degree + i gives Bezier point i of that span. The last point of a span
 /// is the first of the next, so they share a row. Each weight is >= 0 and right to half a unit in the last place.
@@ -29,4 +29,4 @@ struct Extraction {
 
 Extraction make_extraction(const KnotLine& line);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

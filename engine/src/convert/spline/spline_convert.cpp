@@ -11,7 +11,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::vector<NetPoint> net_points(std::span<const Vec3> points, std::span<const double> weights) {
@@ -184,4 +184,4 @@ Result<std::pair<Curve, Curve>> make_compatible(const Curve& a, const Curve& b) 
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

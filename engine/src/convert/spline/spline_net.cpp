@@ -6,7 +6,7 @@
 #include "basis/knots.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Writes sum_j factors[j] rows[j] of each curve. For rational curves the factors include the weights, normalized, so
@@ -129,4 +129,4 @@ std::vector<NetPoint> transposed(const std::vector<NetPoint>& points, std::size_
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A control point and its weight, kept apart so that what does not move keeps its bits.
 struct NetPoint {
@@ -38,4 +38,4 @@ SplineNet elevate_degree(const SplineNet& net);
 /// Returns the points with rows and curves exchanged. The caller keeps the knots.
 std::vector<NetPoint> transposed(const std::vector<NetPoint>& points, std::size_t width);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -20,7 +20,7 @@
 #include "surface/spline/spline_lines.h"
 #include "tessera/convert.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Writes values[0..width) = the sum of `count` weights times `rows`, which lie `stride` apart. One pass keeps the sums
 /// in registers.
@@ -295,4 +295,4 @@ void with_order(int degree, Write write) {
   write(static_cast<std::size_t>(degree) + 1);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

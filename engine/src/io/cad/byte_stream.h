@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class ByteWriter {
  public:
@@ -81,4 +81,4 @@ class ByteReader {
   std::string_view rest_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "io/cad/model_bytes.h"
 #include "tessera/version.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using namespace std::chrono_literals;
@@ -144,4 +144,4 @@ Result<Model> run_cad_reader(const CadReaderRun& run) {
   return Status(model.status().code(), run.file + ": " + model.status().message(), model.status().index());
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct CadExtension {
   std::string_view extension;  ///< ".stp"
@@ -58,4 +58,4 @@ struct CadReaderRun {
 /// (another version), out_of_memory, cancelled, internal.
 Result<Model> run_cad_reader(const CadReaderRun& run);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using std::chrono::milliseconds;
@@ -121,4 +121,4 @@ std::optional<int> ChildProcess::collect(milliseconds limit) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "io/file/descriptor.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// How long to wait for a child.
 struct Patience {
@@ -47,4 +47,4 @@ class ChildProcess {
   Descriptor output_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 void put_surface(ByteWriter& out, const BSplineSurface& surface) {
@@ -164,4 +164,4 @@ bool take_faces(ByteReader& in, std::vector<ShapeFace>& faces) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 // Each take_ returns false if the bytes end too early or hold no such thing.
 
@@ -25,4 +25,4 @@ bool take_surfaces(ByteReader& in, std::vector<ModelSurface>& surfaces);
 Status put_faces(ByteWriter& out, std::span<const ShapeFace> faces);
 bool take_faces(ByteReader& in, std::vector<ShapeFace>& faces);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 
 #include "io/cad/cad_reader.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ Result<std::string> find_cad_reader(const fs::path& named, std::string_view form
                     "sources, which installs OpenCASCADE and builds it, or name it by TESSERA_CAD_READER");
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include "io/cad/shape_bytes.h"
 #include "tessera/topology.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Places the faces of the instances. A few bytes can state many, hence a limit: 512 MiB of surfaces.
@@ -93,4 +93,4 @@ Result<Model> model_from_bytes(std::string_view bytes) {
   return damaged();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

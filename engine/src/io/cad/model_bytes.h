@@ -7,7 +7,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Version of the bytes. Raise it with each change of what they mean, which includes the numbers of StatusCode.
 inline constexpr int model_bytes_version = 2;
@@ -22,4 +22,4 @@ std::string to_bytes(const Result<Model>& model);
 /// (instances of more than four million faces).
 Result<Model> model_from_bytes(std::string_view bytes);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,4 +75,4 @@ Result<Model> read_cad(const fs::path& path, const CadOptions& options) {
   return guarded([&] { return read(path, options); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "io/cad/face_bytes.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 void put_edge(ByteWriter& out, const BrepEdge& edge) {
@@ -85,4 +85,4 @@ bool take_instances(ByteReader& in, std::vector<Instance>& instances) {
   return in.take_each(instances, [&](std::vector<Instance>& list) { return take_instance(in, list); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Errors: internal (a surface that is no B-spline).
 Status put_shapes(ByteWriter& out, const std::vector<Shape>& shapes);
@@ -19,4 +19,4 @@ bool take_shapes(ByteReader& in, std::vector<Shape>& shapes);
 void put_instances(ByteWriter& out, const std::vector<Instance>& instances);
 bool take_instances(ByteReader& in, std::vector<Instance>& instances);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/guard.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not use all memory
@@ -67,4 +67,4 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   return guarded([&] { return read_whole(path); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,9 +8,9 @@
 #include "base/internal_export.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The error "path: what: the system's words for error_number".
 TESSERA_INTERNAL_EXPORT Status io_failure(const std::filesystem::path& path, std::string_view what, int error_number);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 
 #include "io/file/file.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Result<FileWindows> FileWindows::open(const std::filesystem::path& path) {
   // A pipe without a writer must not wait here.
@@ -47,4 +47,4 @@ Status FileWindows::read(std::uint64_t offset, std::size_t bytes, std::string& i
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "io/file/descriptor.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A regular file that is open, and that must not change. Threads: any number of calls to read().
 class FileWindows {
@@ -36,4 +36,4 @@ class FileWindows {
   timespec changed_{};
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

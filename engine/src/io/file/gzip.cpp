@@ -12,7 +12,7 @@
 #include <zlib.h>
 #endif
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::string_view magic = "\x1f\x8b";
@@ -147,4 +147,4 @@ Result<std::string> unpack_gzip(std::string_view, std::string_view name) {
 
 #endif
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

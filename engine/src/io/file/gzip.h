@@ -8,7 +8,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The most that a packed file may become: gzip_ratio times its size and gzip_slack, and never more than gzip_limit.
 inline constexpr std::size_t gzip_ratio = 200, gzip_slack = std::size_t{1} << 20, gzip_limit = std::size_t{1} << 30;
@@ -25,4 +25,4 @@ std::filesystem::path without_gz(const std::filesystem::path& path);
 /// unpacked bytes, which are counted before any are kept.
 Result<std::string> unpack_gzip(std::string_view bytes, std::string_view name);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

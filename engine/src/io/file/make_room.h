@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Makes room for one more element. Expects as many elements per byte from the rest of the text of `size` bytes as from
 /// the bytes read so far: a list that doubles would take up to three times its memory while it moves. Never asks for
@@ -20,4 +20,4 @@ void make_room(std::vector<T>& list, std::size_t read, std::size_t size) {
   list.reserve(count + std::max(expected, 8 + count / 8));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

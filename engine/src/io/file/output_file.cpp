@@ -19,7 +19,7 @@
 #include "io/file/file.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -309,4 +309,4 @@ Status OutputFile::commit() {
   return std::move(status_);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

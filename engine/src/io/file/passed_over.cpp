@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void PassedOver::add(const PartName& name, const TextCursor& at) {
   const auto known = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& k) { return k.name.one == name.one; });
@@ -38,4 +38,4 @@ std::string surface_name(std::string_view text) {
   return std::string(text);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

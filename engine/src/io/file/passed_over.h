@@ -8,7 +8,7 @@
 #include "tessera/files.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Names of a kind of thing, for one and for many: "polyhedron", "polyhedra". They must outlive the counts.
 struct PartName {
@@ -43,4 +43,4 @@ class PassedOver {
 /// The name of a surface from a file: at most 200 bytes of `text`, cut between characters of UTF-8.
 std::string surface_name(std::string_view text);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

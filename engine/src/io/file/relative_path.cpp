@@ -7,7 +7,7 @@
 #include "tessera/files.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,4 +63,4 @@ Result<std::string> percent_decoded(std::string_view uri) {
   return text;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

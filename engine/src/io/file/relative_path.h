@@ -7,7 +7,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The path of the file that `file` calls `relative`, normalised. Errors: unsupported (an absolute path, a URL, a part
 /// ".."), parse_error (no name, or one with a byte of 0).
@@ -24,4 +24,4 @@ Result<std::string> read_regular_file(const std::filesystem::path& path);
 /// A URI with each %20 and such replaced by its byte. Errors: parse_error (% without two hexadecimal digits).
 Result<std::string> percent_decoded(std::string_view uri);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

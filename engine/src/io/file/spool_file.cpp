@@ -10,7 +10,7 @@
 
 #include "io/file/file.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Result<SpoolFile> SpoolFile::make(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -49,4 +49,4 @@ Status SpoolFile::move_to(OutputFile& out) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/files.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A file without a name, which goes with this object, also if the process is killed. One thread at a time.
 class SpoolFile {
@@ -29,4 +29,4 @@ class SpoolFile {
   Descriptor file_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <system_error>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Whether a decimal number that std::from_chars found out of range is too small rather than too large.
@@ -146,4 +146,4 @@ std::string quote(std::string_view text) {
   return result + (text.size() > limit ? "...\"" : "\"");
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -161,4 +161,4 @@ Status write_assembly(const MeshAssembly& assembly, const fs::path& path) {
   return write_file(path, [&](OutputFile& out) { return write_assembly(assembly, path, out); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

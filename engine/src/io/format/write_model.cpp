@@ -10,7 +10,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ Status write_model(const PatchSet& set, const fs::path& path) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

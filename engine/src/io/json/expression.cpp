@@ -15,7 +15,7 @@
 #include "parallel/workspaces.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t largest_count = 3;  // of variables
@@ -159,4 +159,4 @@ Result<double> constant_value(std::string_view text) {
   return value;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

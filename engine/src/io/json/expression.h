@@ -9,7 +9,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A real function of named variables, such as u and v.
 ///   numbers    1  .5  2.5e-3, always with a point
@@ -42,4 +42,4 @@ class Expression {
 /// The value of an expression without variables. Errors: as above, and non_finite.
 Result<double> constant_value(std::string_view text);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 QuadricCoefficients read_coefficients(const JsonValue& value) {
@@ -32,4 +32,4 @@ Surface read_quadric(const JsonValue& value) {
   return made(value, QuadricPiece::make(quadric, read_domain(fields.at("range")), sheet));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::vector<double> weights_of(const Fields& fields, std::size_t count) {
@@ -152,4 +152,4 @@ Knots read_knots(const JsonValue& value, int degree, std::size_t count) {
   return knots;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

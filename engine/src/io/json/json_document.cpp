@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Reads bytes, and counts those read.
@@ -226,4 +226,4 @@ void JsonValue::fail_expected(std::string_view what) const {
   fail("expected " + std::string(what) + ", found " + found);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 enum class JsonKind : std::uint8_t { null, boolean, number, string, array, object };
 
@@ -113,4 +113,4 @@ class JsonValue {
 
 inline JsonValue JsonDocument::root() const { return {this, 0}; }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "io/json/json_kinds.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 struct Coordinate {
@@ -103,4 +103,4 @@ Surface read_parametric_surface(const JsonValue& value) {
   return made(value, ParametricSurface::over_disc({.position = coordinates.function()}, disc));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

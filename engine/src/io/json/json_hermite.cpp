@@ -5,7 +5,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Domain domain_of(const Fields& fields) { return fields.get("domain", Domain{}, read_domain); }
@@ -129,4 +129,4 @@ Surface read_hermite_network(const JsonValue& value) {
   return made(value, HermiteNetwork::on_knots(u, v, nodes.elements));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/surface.h"
 #include "tessera/trim_loop.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The fields of a surface: those common to all kinds, and its own.
 class SurfaceFields : public Fields {
@@ -67,4 +67,4 @@ struct Knots {
 /// `count` is the number of points.
 Knots read_knots(const JsonValue& value, int degree, std::size_t count);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

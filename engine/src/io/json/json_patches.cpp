@@ -2,7 +2,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Checks that "degree", which is optional, agrees with the net.
@@ -68,4 +68,4 @@ Surface read_tensor_patch(const JsonValue& value) {
   return made(value, TensorPatch::make(u, v, net.elements, fields.get("domain", Domain{}, read_domain)));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Vec3 read_scale(const JsonValue& value) {
@@ -44,4 +44,4 @@ Affine read_placement(const JsonValue& value) {
   return placement;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

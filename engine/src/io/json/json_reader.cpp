@@ -6,7 +6,7 @@
 #include "io/json/expression.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::string listed(std::initializer_list<std::string_view> words) {
@@ -108,4 +108,4 @@ Domain read_domain(const JsonValue& value) {
   return {u.from, u.to, v.from, v.to};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An object with a known set of keys. An unknown key is an error, so that no typing error is silent.
 class Fields {
@@ -101,4 +101,4 @@ void expect_shape(const JsonValue& value, const Net<T>& net, std::size_t rows, s
              shape(net.rows, net.columns));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

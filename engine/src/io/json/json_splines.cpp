@@ -4,7 +4,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Repeats the first rows and columns at the end, as periodic knots need.
@@ -112,4 +112,4 @@ Surface read_revolution(const JsonValue& value) {
   return made(value, make_surface_of_revolution(read_curve(fields.at("profile")), axis_of(fields), arcs_of(fields)));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

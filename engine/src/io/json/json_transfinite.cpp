@@ -6,7 +6,7 @@
 #include "io/json/expression.h"
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::function<double(double)> read_blend_function(const JsonValue& value) {
@@ -51,4 +51,4 @@ Surface read_coons_patch(const JsonValue& value) {
   return made(value, CoonsPatch::make(borders, options));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "io/json/json_kinds.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 bool read_flag(const JsonValue& value) {
@@ -27,4 +27,4 @@ std::vector<TrimLoop> read_trims(const JsonValue& value) {
   return loops;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "io/spline/model_formats.h"
 #include "io/spline/patch_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// `text` in quotes. Bytes that are not UTF-8 become U+FFFD.
@@ -149,4 +149,4 @@ Status write_json_model(std::span<const WrittenSurface> surfaces, OutputFile& ou
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The most that rounding x to float or double moves it, for |x| <= size: half a unit in the last place, or half of the
@@ -70,4 +70,4 @@ double file_rounding(const Mesh& mesh, const std::filesystem::path& path) {
   return file_rounding(path, range.origin, range.reach, range.has_doubles);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The numbers that decide how positions round.
 struct PositionRange {
@@ -20,4 +20,4 @@ struct PositionRange {
 /// move vertices by more than 2^-16 of the reach. Meshes with positions in double have these written in any case.
 bool needs_double_sums(const PositionRange& range);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 #include "io/mesh/mesh_formats.h"
 #include "tessera/mesh_assembly.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t max_bytes = std::numeric_limits<std::int32_t>::max();  // tinygltf keeps offsets in int
@@ -228,4 +228,4 @@ Status write_gltf(const Mesh& mesh, OutputFile& out) { return write(mesh, out, f
 Status write_glb_assembly(const MeshAssembly& assembly, OutputFile& out) { return write(assembly, out, true); }
 Status write_gltf_assembly(const MeshAssembly& assembly, OutputFile& out) { return write(assembly, out, false); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

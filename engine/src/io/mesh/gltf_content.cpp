@@ -9,7 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is written in the machine's own byte order");
@@ -202,4 +202,4 @@ void GltfContent::add_box(tinygltf::Accessor& accessor, std::size_t first, std::
   accessor.maxValues.assign(most.begin(), most.end());
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 #include "tessera/geometry.h"
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Builds a file of one scene with one node at its top. For meshes of triangles that are valid.
 class GltfContent {
@@ -73,4 +73,4 @@ class GltfContent {
   std::map<std::array<float, 4>, int> materials_;                    ///< by colour
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

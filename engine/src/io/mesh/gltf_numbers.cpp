@@ -13,7 +13,7 @@
 #include "tessera/files.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t max_data_uri = std::numeric_limits<std::int32_t>::max();  // tinygltf counts in int
@@ -214,4 +214,4 @@ std::string_view GltfNumbers::load_file(const JsonValue& uri) {
   return *file;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

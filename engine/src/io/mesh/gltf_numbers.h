@@ -12,7 +12,7 @@
 
 #include "io/json/json_document.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Elements of an accessor, which all lie within its buffer.
 struct GltfElements {
@@ -68,4 +68,4 @@ std::optional<JsonValue> optional_member(const JsonValue& object, std::string_vi
 std::size_t read_count(const JsonValue& object, std::string_view key, std::size_t otherwise);
 std::size_t read_count(const JsonValue& value);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -18,7 +18,7 @@
 #include "io/mesh/mesh_formats.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The JSON of a file, and the binary chunk of a .glb file.
@@ -388,4 +388,4 @@ Result<Mesh> parse_gltf(std::string_view bytes, std::string_view name, const Mes
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

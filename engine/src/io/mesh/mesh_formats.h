@@ -11,7 +11,7 @@
 #include "tessera/mesh_assembly.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Writes Wavefront OBJ: v, vt, vn, f, and g for parts. Patches of faces are not kept. If the mesh has positions in
 /// double, or needs_double_sums(), doubles are written so that they read back as the same.
@@ -55,4 +55,4 @@ inline float file_coordinate(double origin, float relative) {
   return static_cast<float>(origin + static_cast<double>(relative));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "parallel/parallel_for.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t piece_bytes = std::size_t{1} << 16;  // packed by a thread at a time
@@ -52,4 +52,4 @@ Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
   return write_packed(PackedSink(write), count, bytes, pack);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/files.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Takes bytes one after the other. Returns false once no more are wanted.
 using PackedSink = FunctionRef<bool(std::string_view)>;
@@ -33,4 +33,4 @@ inline void put_floats(const Vec3& v, char* to) {
   std::memcpy(to + 8, &z, sizeof z);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "io/mesh/polygon.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY is read in the machine's own byte order");
@@ -261,4 +261,4 @@ Result<Mesh> parse_ply(std::string_view bytes, std::string_view name, const Mesh
   return BodyReader(AsciiValues(bytes, header->bytes, name), options).read(*header);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::optional<PlyType> parse_type(std::string_view word) {
@@ -179,4 +179,4 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name
   return HeaderReader(bytes, name).read();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

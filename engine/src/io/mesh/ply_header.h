@@ -8,7 +8,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
@@ -40,4 +40,4 @@ struct PlyHeader {
 /// Parses the header. Errors: parse_error, with the line; unsupported for big endian.
 Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/guard.h"
 #include "tessera/mesh_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class PlyStream::Content {
  public:
@@ -97,4 +97,4 @@ Status PlyStream::commit() {
   return guarded([&] { return content_->commit(); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

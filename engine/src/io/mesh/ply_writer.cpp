@@ -15,7 +15,7 @@
 #include "tessera/guard.h"
 #include "tessera/mesh_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "PLY is written in the machine's own byte order");
@@ -218,4 +218,4 @@ Status PlyPieces::commit() {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

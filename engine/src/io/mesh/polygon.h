@@ -3,7 +3,7 @@
 
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Makes a quad of the last two triangles, a fan of four corners.
 inline void join_last_quad(Mesh& mesh) {
@@ -12,4 +12,4 @@ inline void join_last_quad(Mesh& mesh) {
   mesh.indices.erase(fan, mesh.indices.end());
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

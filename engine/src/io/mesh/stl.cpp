@@ -15,7 +15,7 @@
 #include "io/mesh/vertex_welder.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "STL is read and written in the machine's own byte order");
@@ -191,4 +191,4 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
                              std::to_string((bytes.size() - header_bytes) % triangle_bytes) + " bytes more");
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 #include "parallel/parallel_for.h"
 #include "tess/mesh/mesh_parts.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t values_per_piece = std::size_t{1} << 16;
@@ -200,4 +200,4 @@ Status validate(const MeshAssembly& assembly) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/mesh_pieces.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks that the mesh has vertices, its lengths agree, its indices, parts and colours are in range and its numbers
 /// fit float in the model's space. Errors: count_mismatch, invalid_argument, non_finite (index = the place).
@@ -22,4 +22,4 @@ Status check_patches(const Mesh& mesh, std::uint64_t first_patch);
 /// instance).
 Status validate(const MeshAssembly& assembly);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "tess/edges/position_bits.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 std::size_t VertexWelder::slot_of(const std::array<float, 3>& position) const {
   const PositionBits bits = position_bits(position.data());
@@ -31,4 +31,4 @@ void VertexWelder::grow() {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

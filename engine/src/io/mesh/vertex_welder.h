@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Numbers distinct positions in the order in which they come. Positions are equal if their bits are, with -0 taken as
 /// 0. Memory: 4 to 16 bytes per vertex besides the positions.
@@ -27,4 +27,4 @@ class VertexWelder {
   std::vector<std::uint32_t> table_;  // open hash table of vertices
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/guard.h"
 #include "tessera/mesh_pieces.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -191,4 +191,4 @@ Status write_pvtp(const MeshTotals& totals, const fs::path& index, std::size_t p
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "io/obj/freeform_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Control points and weights as the surface kinds take them; no weights if nothing is rational.
@@ -254,4 +254,4 @@ Result<std::vector<Curve>> freeform_curves(const FreeformState& state, const Con
   return one_curve(degree, bezier_knots(degree, state.u.parm), net);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 enum class FreeformType : std::uint8_t { none, bezier, bspline, cardinal, taylor, bmatrix };
 
@@ -50,4 +50,4 @@ Result<std::vector<Surface>> freeform_surfaces(const FreeformState& state, const
 /// Makes the curve over all of its parameters, with results and errors as for surfaces.
 Result<std::vector<Curve>> freeform_curves(const FreeformState& state, const ControlPoints& points);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

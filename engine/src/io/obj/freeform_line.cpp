@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::string values(const FreeformLine& line, char direction) {
@@ -118,4 +118,4 @@ std::size_t piece_step(FreeformType type, const FreeformLine& line) {
                                       : static_cast<std::size_t>(*line.step);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

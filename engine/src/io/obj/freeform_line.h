@@ -9,7 +9,7 @@
 #include "io/obj/freeform.h"
 #include "tessera/tensor_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The number of control points that the direction needs. `available` is how many there are; it bounds the steps.
 /// Errors: unsupported_degree, count_mismatch, invalid_argument.
@@ -40,4 +40,4 @@ Homogeneous cardinal_bezier_point(std::size_t r, std::size_t pieces, At&& at) {
   return at(piece + 2) - 1.0 / 6 * (at(piece + 3) - at(piece + 1));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

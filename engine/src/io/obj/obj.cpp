@@ -11,7 +11,7 @@
 #include "io/obj/obj_name.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 template <class T>
@@ -187,4 +187,4 @@ Result<Mesh> parse_obj(std::string_view text, std::string_view name, const MeshR
   return ObjReader(text, name, options).read();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -20,7 +20,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 enum class ElementKind : std::uint8_t { none, surf, curv, curv2 };
@@ -386,4 +386,4 @@ Result<Model> parse_obj_freeform(std::string_view text, std::string_view name) {
   return guarded([&] { return ObjFreeformReader(text, name).read(); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

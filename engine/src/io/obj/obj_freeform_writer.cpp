@@ -8,7 +8,7 @@
 #include "io/spline/model_formats.h"
 #include "io/spline/patch_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 class ObjSurfaceWriter {
@@ -140,4 +140,4 @@ Status write_obj_freeform(std::span<const WrittenSurface> surfaces, OutputFile& 
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

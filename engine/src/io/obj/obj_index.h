@@ -7,7 +7,7 @@
 
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The error for a number that is not an index into the `count` records (`kind`: "vertices") before it.
 inline Status obj_index_failure(const TextCursor& before, std::string_view kind, std::size_t count) {
@@ -29,4 +29,4 @@ inline Status read_obj_index(TextCursor& cursor, std::string_view what, std::str
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// `name` on one line, changed so that it reads back: no control characters, no # (begins a comment), no \ (continues
 /// the line).
@@ -19,4 +19,4 @@ inline std::string obj_name(std::string_view name) {
   return line;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

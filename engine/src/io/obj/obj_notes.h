@@ -9,7 +9,7 @@
 
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Statements by name: how often each occurred, and where the first stood.
 class ObjNotes {
@@ -42,4 +42,4 @@ class ObjNotes {
   std::size_t total_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "io/obj/obj_index.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The curve on a part of its domain.
@@ -59,4 +59,4 @@ Status ObjTrimCurves::read_loop(TextCursor& cursor, std::vector<Curve>& loop) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

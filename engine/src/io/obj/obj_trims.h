@@ -8,7 +8,7 @@
 #include "tessera/files.h"
 #include "tessera/model.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Each curve is a chain of pieces. Loops share whole pieces; a part of a piece is a copy with another domain. All
 /// copies together may have as many control points as the file has bytes; files that refer to each curve a few times
@@ -30,4 +30,4 @@ class ObjTrimCurves {
   std::size_t allowed_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

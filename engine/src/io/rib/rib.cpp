@@ -22,7 +22,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Requests that draw shapes that are not read. All other requests say how, and from where, the scene is drawn.
@@ -381,4 +381,4 @@ Result<Model> parse_rib(std::string_view text, std::string_view name) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

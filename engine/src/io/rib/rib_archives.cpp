@@ -7,7 +7,7 @@
 #include "io/file/gzip.h"
 #include "io/file/relative_path.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ Result<const RibArchive*> RibArchives::load(const TextCursor& at, const std::str
   return archive.get();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

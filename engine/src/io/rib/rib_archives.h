@@ -10,7 +10,7 @@
 
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct RibArchive {
   std::string name;  ///< its path, for messages
@@ -43,4 +43,4 @@ class RibArchives {
   std::size_t files_bytes_, opened_bytes_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

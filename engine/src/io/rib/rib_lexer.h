@@ -9,7 +9,7 @@
 
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class RibLexer {
  public:
@@ -57,4 +57,4 @@ class RibLexer {
   TextCursor cursor_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double sixth = 1.0 / 6;
@@ -338,4 +338,4 @@ Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirec
   return surfaces;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

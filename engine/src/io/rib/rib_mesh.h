@@ -8,7 +8,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A basis of cubics as the Interface writes it: [t^3 t^2 t 1] M G, and the step from one patch of a mesh to the next.
 struct RibBasis {
@@ -55,4 +55,4 @@ Result<std::vector<Surface>> mesh_surfaces(const RibDirection& u, const RibDirec
 Result<BSplineSurface> spline_surface(int degree_u, std::span<const double> knots_u, int degree_v,
                                       std::span<const double> knots_v, RibNet net, std::optional<Domain> domain = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

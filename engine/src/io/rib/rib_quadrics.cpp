@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "io/spline/elementary.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -128,4 +128,4 @@ Result<RibQuadric> read_quadric(const RibSurfaceText& text) {
   return quadric;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

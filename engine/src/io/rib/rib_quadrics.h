@@ -5,7 +5,7 @@
 #include "tessera/geometry.h"
 #include "tessera/surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A surface, and the map from its coordinates to those of the request.
 struct RibQuadric {
@@ -18,4 +18,4 @@ struct RibQuadric {
 /// number, an angle beyond a full turn, a size of 0).
 Result<RibQuadric> read_quadric(const RibSurfaceText& text);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

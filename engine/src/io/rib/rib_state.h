@@ -11,7 +11,7 @@
 #include "tessera/geometry.h"
 #include "tessera/model.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct RibState {
   /// From the current coordinates to those at WorldBegin (within an object: at ObjectBegin; before both: at the file's
@@ -75,4 +75,4 @@ class RibStack {
   std::vector<Block> blocks_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The positions of a parameter list.
@@ -171,4 +171,4 @@ Result<std::vector<Surface>> read_nu_patch(const RibSurfaceText& text) {
   return surfaces;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "io/rib/rib_mesh.h"
 #include "tessera/surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The most points in one direction.
 inline constexpr std::int64_t rib_count_limit = std::int64_t{1} << 30;
@@ -32,4 +32,4 @@ Result<std::vector<Surface>> read_nu_patch(const RibSurfaceText& text);
 /// The variable's own name in a declaration such as "vertex point P".
 std::string_view variable_name(std::string_view declaration);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "io/file/passed_over.h"
 #include "tessera/files.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Counts occurrences by name, and keeps the place of the first. The names must outlive it.
 class Tally {
@@ -41,4 +41,4 @@ class Tally {
   std::string place_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

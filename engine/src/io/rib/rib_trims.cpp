@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 enum Part { counts, orders, knots, minima, maxima, lengths, us, vs, ws, part_count };
@@ -98,4 +98,4 @@ Result<std::vector<TrimLoop>> read_trim_loops(RibLexer& lexer) {
   return LoopMaker(begin, parts).loops();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Points = std::array<Vec3, (max_degree + 1) * (max_degree + 1)>;
@@ -147,4 +147,4 @@ Result<Model> parse_bpt(std::string_view text, std::string_view name) {
 
 std::unique_ptr<ItemReader> make_bpt_reader(std::size_t count) { return std::make_unique<BptReader>(count); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "io/spline/model_formats.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Whether all weights are equal, so that they change nothing.
@@ -55,4 +55,4 @@ Status write_bpt(std::span<const WrittenSurface> surfaces, OutputFile& out, std:
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr PartName polyhedra{"polyhedron", "polyhedra"}, triangles{"triangular patch", "triangular patches"},
@@ -209,4 +209,4 @@ Result<Model> parse_bv(std::string_view text, std::string_view name) {
   return guarded([&] { return BvReader(text, name).read(); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 double snapped(double turn) { return std::abs(turn - 2 * pi) <= printed ? 2 * pi : turn; }
@@ -68,4 +68,4 @@ Result<Surface> torus_part(double major, double minor, const Domain& range) {
   return revolved_part(*arc, turn_u);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/status.h"
 #include "tessera/surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr double pi = std::numbers::pi;
 /// Files print angles with 15 digits or fewer: within this, an angle is taken as a full turn, or as that of a pole.
@@ -30,4 +30,4 @@ Result<Surface> torus_part(double major, double minor, const Domain& range);
 /// Tells whether `turn` radians are above 0 and at most a full turn, up to the rounding of angles in files.
 bool is_turn(double turn);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 #include "tessera/io.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::pair<std::int64_t, PartName> unread_classes[] = {
@@ -352,4 +352,4 @@ Result<Model> parse_g2(std::string_view text, std::string_view name) {
 
 std::unique_ptr<ItemReader> make_g2_reader() { return std::make_unique<G2Reader>(); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/surface.h"
 #include "tessera/trim_loop.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Classes that are read (GoTools, ClassType.h).
 enum G2Class : std::int64_t {
@@ -114,4 +114,4 @@ Result<G2Loops> read_g2_loops(G2Numbers& numbers);
 /// Reads a spline curve of this dimension, 2 or 3, after its class.
 Result<Curve> read_g2_curve(G2Numbers& numbers, std::int64_t dimension);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

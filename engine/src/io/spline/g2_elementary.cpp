@@ -8,7 +8,7 @@
 #include "io/spline/g2.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Axes of length 1, x made orthogonal to z. None if an axis is zero or the two are parallel.
@@ -108,4 +108,4 @@ Result<G2Object> make_g2_elementary(std::int64_t kind, const G2Elementary& recor
   return G2Object{*std::move(surface), placement, shift_v};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "io/spline/g2.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Result<G2Extrusion> read_g2_extrusion(G2Numbers& numbers) {
   numbers.integer("the dimension 3", 3, 3);
@@ -37,4 +37,4 @@ Result<Surface> make_g2_extrusion(const G2Extrusion& extrusion, const Interval& 
   return Surface(*std::move(surface));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

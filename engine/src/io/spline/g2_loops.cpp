@@ -9,7 +9,7 @@
 #include "io/spline/g2.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::int64_t limit = std::int64_t{1} << 30;
@@ -179,4 +179,4 @@ Result<Curve> read_g2_curve(G2Numbers& numbers, std::int64_t dimension) {
 
 Result<G2Loops> read_g2_loops(G2Numbers& numbers) { return LoopReader(numbers).read(); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -17,7 +17,7 @@
 #include "tessera/model.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// An item that is not read, and its place.
 struct PassedItem {
@@ -121,4 +121,4 @@ class ItemWalk {
 /// Reads all surfaces of a text; `name` stands for the file in messages.
 Result<Model> read_items(ItemReader& reader, std::string_view text, std::string_view name);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

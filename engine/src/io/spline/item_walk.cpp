@@ -4,7 +4,7 @@
 #include "io/file/make_room.h"
 #include "io/spline/item_reader.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Status ItemWalk::go(const FilePlace& from, std::size_t window_bytes, Load load, Take take) {
   at_ = from;
@@ -89,4 +89,4 @@ Result<Model> read_items(ItemReader& reader, std::string_view text, std::string_
   return model;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

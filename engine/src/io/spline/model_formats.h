@@ -11,7 +11,7 @@
 #include "tessera/files.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The parts of a surface that are written. Patches are ordered as in a PatchGrid: patch (a, b) is at a *
 /// (breaks_v.size() - 1) + b.
@@ -43,4 +43,4 @@ struct SurfaceWriter {
 /// The writer for the extension of `path`. Errors: unsupported, with a list of the known extensions.
 Result<SurfaceWriter> surface_writer(const std::filesystem::path& path);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

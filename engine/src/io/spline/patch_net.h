@@ -6,7 +6,7 @@
 
 #include "io/spline/model_formats.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The patches of a surface as one net: control point (i, j) of the whole.
 class PatchNet {
@@ -80,4 +80,4 @@ bool write_as_nets(const WrittenSurface& surface, const OutputFile& out, Write w
   return surface.trims.empty();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "io/spline/surface_index.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class SurfaceFile::Content {
  public:
@@ -41,4 +41,4 @@ Result<Model> SurfaceFile::read(std::size_t first, std::size_t end) const {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "io/file/gzip.h"
 #include "tessera/io.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Result<SurfaceIndex::Format> SurfaceIndex::format_of(const FileWindows& file) {
   const std::filesystem::path& path = file.path();
@@ -72,4 +72,4 @@ Status SurfaceIndex::go(ItemWalk& walk, const FilePlace& from, ItemWalk::Take ta
   return walk.go(from, options_.window, load, take);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "io/file/file_windows.h"
 #include "io/spline/item_reader.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// How a file is read piece by piece, in bytes of text.
 struct IndexOptions {
@@ -45,4 +45,4 @@ class SurfaceIndex {
   std::vector<FilePlace> places_{FilePlace{}};  ///< each behind a surface, but for the first
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

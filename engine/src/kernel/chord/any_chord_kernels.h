@@ -4,7 +4,7 @@
 #include "kernel/chord/chord_kernels.h"
 #include "kernel/isa/lanes.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 
 struct AnyChordKernels {
   void (*bound_chords)(const ChordJob&);
@@ -16,4 +16,4 @@ struct AnyChordKernels {
 };
 extern const AnyChordKernels any_chord_kernels;
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -6,7 +6,7 @@
 
 #include "kernel/isa/block_lanes.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// Bounds on the second derivatives of a block of polynomial patches, over the whole patch, its halves and quarters:
 /// see ChordBound. They include the rounding of the packed coefficients.
@@ -104,4 +104,4 @@ struct ChordKernels {
   void (*find_rates)(const RateJob&);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

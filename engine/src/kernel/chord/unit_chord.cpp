@@ -4,7 +4,7 @@
 #include "kernel/chord/chord_kernels.h"
 #include "kernel/isa/lanes.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/chord/chord_product.inl.h"
@@ -37,4 +37,4 @@ extern const ChordKernels chord_kernels = {
     bound_rational_products_of_block, share_of_products_of_block,  find_rates<Lanes<float>>,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

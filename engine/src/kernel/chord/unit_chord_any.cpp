@@ -4,7 +4,7 @@
 #include "kernel/chord/any_chord_kernels.h"
 #include "kernel/isa/lanes.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/chord/rational_chord.inl.h"
@@ -18,4 +18,4 @@ extern const AnyChordKernels any_chord_kernels = {
     bound_products<Lanes<float>, 0>, bound_rational_products<Lanes<float>>, share_of_products<Lanes<float>, 0>,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -5,7 +5,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// The numbers of a vector, and the rows of a grid whose row curves share one vector, three components each.
 inline constexpr int flat_lanes = 16, flat_rows = 4;
@@ -30,4 +30,4 @@ struct FlatKernels {
   Isa (*flat_f32)(const FlatJob&);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

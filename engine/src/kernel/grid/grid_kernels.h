@@ -8,7 +8,7 @@
 #include "tessera/execution.h"
 #include "tessera/strided_view.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// The place of a parameter in GridJob::u_edges and v_edges.
 inline constexpr std::uint8_t edge_inside = 0, edge_start = 1, edge_end = 2;
@@ -82,4 +82,4 @@ struct DoubleGridKernels {
   Isa (*grid_f64)(const GridJob<double>&);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

@@ -7,7 +7,7 @@
 #include "kernel/isa/block_lanes.h"
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// Border curves of a block, lanes = patches, evaluated so that the parameter's direction does not change a bit.
 template <class T>
@@ -71,4 +71,4 @@ struct LineKernels {
   Isa (*blend_f64)(const BlendJob<double>&);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

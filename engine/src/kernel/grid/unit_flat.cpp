@@ -5,7 +5,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/store/stream_state.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/grid/flat_kernel.inl.h"
@@ -24,4 +24,4 @@ constexpr auto flat_kernel() -> Isa (*)(const FlatJob&) {
 
 extern const FlatKernels flat_kernels = {flat_kernel<Lanes<float>>()};
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -6,7 +6,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/grid/line_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/grid/grid_kernel.inl.h"
@@ -30,4 +30,4 @@ extern const GridKernels grid_kernels = {
     mesh_line_kernel<Lanes<float>>(),
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

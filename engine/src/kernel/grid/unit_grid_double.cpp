@@ -5,7 +5,7 @@
 #include "kernel/grid/grid_kernels.h"
 #include "kernel/isa/lanes.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/grid/grid_kernel.inl.h"
@@ -16,4 +16,4 @@ extern const DoubleGridKernels double_grid_kernels = {
     evaluate_grid<Lanes<double>>,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -3,7 +3,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/grid/line_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/grid/line_kernel.inl.h"
@@ -18,4 +18,4 @@ extern const LineKernels line_kernels = {
     end_lines<Lanes<double>>,      blend<Lanes<float>>,       blend<Lanes<double>>,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

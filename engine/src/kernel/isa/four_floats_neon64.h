@@ -3,8 +3,7 @@
 
 #include <arm_neon.h>
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE { namespace {
 
 using Four = float32x4_t;
 
@@ -48,5 +47,4 @@ struct Triple {
   }
 };
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

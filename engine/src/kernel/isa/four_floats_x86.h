@@ -4,8 +4,7 @@
 
 #include <immintrin.h>
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE { namespace {
 
 using Four = __m128;
 
@@ -68,5 +67,4 @@ struct Triple {
 #endif
 };
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

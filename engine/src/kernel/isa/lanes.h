@@ -13,10 +13,8 @@
 #include "kernel/isa/lanes_sse2.h"
 #endif
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE { namespace {
 
 inline constexpr int max_order = 16;  // coefficients of the highest degree
 
-}  // namespace
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -11,9 +11,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
-namespace isa_avx2 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace isa_avx2 { namespace {
 
 constexpr Isa this_isa = Isa::avx2;
 
@@ -224,8 +222,6 @@ struct Lanes<double> {
   }
 };
 
-}  // namespace
-}  // namespace isa_avx2
-}  // namespace tessera::inline abi_0_1::kernel
+}}}}}  // namespace tessera::abi_0_1::kernel::isa_avx2
 
 #define TESSERA_ISA_NAMESPACE isa_avx2

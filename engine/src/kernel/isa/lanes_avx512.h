@@ -10,9 +10,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
-namespace isa_avx512 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace isa_avx512 { namespace {
 
 constexpr Isa this_isa = Isa::avx512;
 template <class T>
@@ -273,8 +271,6 @@ struct Lanes<double> {
   }
 };
 
-}  // namespace
-}  // namespace isa_avx512
-}  // namespace tessera::inline abi_0_1::kernel
+}}}}}  // namespace tessera::abi_0_1::kernel::isa_avx512
 
 #define TESSERA_ISA_NAMESPACE isa_avx512

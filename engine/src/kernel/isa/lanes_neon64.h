@@ -9,9 +9,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
-namespace isa_neon64 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace isa_neon64 { namespace {
 
 constexpr Isa this_isa = Isa::neon64;
 
@@ -272,8 +270,6 @@ struct Lanes<double> : ThroughMemory<double> {
   }
 };
 
-}  // namespace
-}  // namespace isa_neon64
-}  // namespace tessera::inline abi_0_1::kernel
+}}}}}  // namespace tessera::abi_0_1::kernel::isa_neon64
 
 #define TESSERA_ISA_NAMESPACE isa_neon64

@@ -11,9 +11,7 @@
 
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
-namespace isa_sse2 {
-namespace {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace isa_sse2 { namespace {
 
 constexpr Isa this_isa = Isa::sse2;
 
@@ -181,8 +179,6 @@ struct Lanes<double> {
   }
 };
 
-}  // namespace
-}  // namespace isa_sse2
-}  // namespace tessera::inline abi_0_1::kernel
+}}}}}  // namespace tessera::abi_0_1::kernel::isa_sse2
 
 #define TESSERA_ISA_NAMESPACE isa_sse2

@@ -7,7 +7,7 @@
 #include "kernel/grid/grid_kernels.h"
 #include "kernel/store/stream_state.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// The number of neighbouring samples in a row of a mesh's vertices that are evaluated together.
 inline constexpr int mesh_tile = 8;
@@ -102,4 +102,4 @@ struct MeshKernels {
   void (*finish_lines)(StreamState& lines);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

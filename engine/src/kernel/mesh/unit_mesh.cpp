@@ -3,7 +3,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/mesh/mesh_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/mesh/mesh_kernel.inl.h"
@@ -58,4 +58,4 @@ extern const MeshKernels mesh_kernels = {
     finish_lines_kernel<Lanes<float>>(),
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -5,7 +5,7 @@
 
 #include "kernel/isa/block_lanes.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// The control points of a block's patches, to be packed into its lanes relative to an origin.
 template <class T>
@@ -63,4 +63,4 @@ struct NetKernels {
   void (*combine)(const CombineJob&);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

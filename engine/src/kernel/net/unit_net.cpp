@@ -4,7 +4,7 @@
 #include "kernel/store/memory_kernels.h"
 #include "kernel/net/net_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/net/net_kernel.inl.h"
@@ -22,4 +22,4 @@ extern const MemoryKernels memory_kernels = {
     finish_streaming<Lanes<float>>,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

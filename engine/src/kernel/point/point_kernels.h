@@ -6,7 +6,7 @@
 
 #include "kernel/grid/grid_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// Up to block_lanes neighbouring samples, one per lane.
 struct PointSlot {
@@ -92,4 +92,4 @@ struct PointKernels {
   void (*store_points_f64)(const PointStoreJob<double>&);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

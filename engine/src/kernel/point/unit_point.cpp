@@ -5,7 +5,7 @@
 #include "kernel/isa/lanes.h"
 #include "kernel/point/point_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/grid/grid_kernel.inl.h"
@@ -20,4 +20,4 @@ extern const PointKernels point_kernels = {
     store_points<Lanes<float>>,    store_points<Lanes<double>>,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

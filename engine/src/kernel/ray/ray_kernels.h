@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// A piece of a patch in coordinates of its own: x -> axis[.] (x - centre), in which the piece is nearly (u, v, 0),
 /// with u and v in [-1/2, 1/2]. The coefficients of u^i v^j, i and j up to 3, follow it in memory, `[i][j]`: three per
@@ -142,4 +142,4 @@ struct RayKernels {
                              double v, RayPoint& out);
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

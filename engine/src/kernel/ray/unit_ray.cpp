@@ -5,7 +5,7 @@
 #include "kernel/isa/four_floats.h"
 #include "kernel/ray/ray_kernels.h"
 
-namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE {
+namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESSERA_ISA_NAMESPACE {
 namespace {
 
 #include "kernel/ray/cubic_point.inl.h"
@@ -27,4 +27,4 @@ extern const RayKernels ray_kernels = {
     packets, trace_polynomial_leaf, trace_rational_leaf, cubic_point, low_rational_point,
 };
 
-}  // namespace tessera::inline abi_0_1::kernel::TESSERA_ISA_NAMESPACE
+}}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 struct MemoryKernels {
   /// For limits.h: `rounds` times 16 independent fused multiply-adds of whole vectors. Return the lanes of a vector.
@@ -16,4 +16,4 @@ struct MemoryKernels {
   void (*finish_streaming)();
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

@@ -1,7 +1,7 @@
 #pragma once
 // The state of an output that is streamed in whole cache lines but computed in pieces.
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// Numbers that follow each other in memory and come in pieces by several kernel calls; those of an incomplete line
 /// wait here. The first and the last line may be shared with others, and are stored plainly. Initially both pointers
@@ -12,4 +12,4 @@ struct StreamState {
   alignas(64) float carry[16] = {};
 };
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

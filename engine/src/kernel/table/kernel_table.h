@@ -17,7 +17,7 @@
 #include "kernel/store/memory_kernels.h"
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 struct KernelTable : GridKernels,
                      DoubleGridKernels,
@@ -42,9 +42,9 @@ const KernelTable& default_kernels();
 /// Returns the kernels of an ISA, which must be one that available_isas() lists.
 const KernelTable& kernels(Isa isa);
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the instruction set of a call: the wanted one, or default_isa(). Errors: isa_unavailable.
 TESSERA_INTERNAL_EXPORT Result<Isa> usable_isa(std::optional<Isa> wanted);
@@ -52,4 +52,4 @@ TESSERA_INTERNAL_EXPORT Result<Isa> usable_isa(std::optional<Isa> wanted);
 /// Returns the kernels of rays, for the library of rays: the namespace `kernel` stays inside the core.
 TESSERA_INTERNAL_EXPORT const kernel::RayKernels& ray_kernels(Isa isa);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

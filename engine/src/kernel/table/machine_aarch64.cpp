@@ -2,7 +2,7 @@
 
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 namespace isa_neon64 {
 constexpr Isa this_isa = Isa::neon64;
 #include "kernel/table/isa_tables.inl.h"
@@ -13,4 +13,4 @@ std::span<const KernelTable* const> machine_kernels() {
   return {&only, 1};
 }
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

@@ -4,7 +4,7 @@
 
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::inline abi_0_1::kernel {
+namespace tessera { inline namespace abi_0_1 { namespace kernel {
 namespace isa_sse2 {
 constexpr Isa this_isa = Isa::sse2;
 #include "kernel/table/isa_tables.inl.h"
@@ -46,4 +46,4 @@ std::span<const KernelTable* const> machine_kernels() {
   return {found.tables.data(), found.count};
 }
 
-}  // namespace tessera::inline abi_0_1::kernel
+}}}  // namespace tessera::abi_0_1::kernel

@@ -8,7 +8,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tessera/execution.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::array<Isa, 4> all_isas{Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon64};
@@ -101,4 +101,4 @@ const KernelTable& default_kernels() {
 
 const kernel::RayKernels& ray_kernels(Isa isa) { return kernel::kernels(isa); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

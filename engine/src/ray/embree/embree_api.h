@@ -3,7 +3,7 @@
 
 #include "tessera/ray_embree.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 enum class Coherence { incoherent, coherent };
 
@@ -123,4 +123,4 @@ inline void set_instances(const EmbreeContext& context, RTCHit& hit) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

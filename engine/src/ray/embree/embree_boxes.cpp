@@ -6,7 +6,7 @@
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_ray.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The data that a call of Embree carries to the callback. Embree's context comes first, so that a pointer to it is one
@@ -107,4 +107,4 @@ std::size_t EmbreeBoxes::memory_bytes() const {
   return state_->monitor.bytes() + state_->boxes.capacity() * sizeof(Box3);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

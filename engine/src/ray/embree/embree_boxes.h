@@ -12,7 +12,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Owns device, scene and geometry. Const calls from any number of threads, each inside a FlushDenormals
 /// (embree_scene.h).
@@ -44,4 +44,4 @@ class EmbreeBoxes {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

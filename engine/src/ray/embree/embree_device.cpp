@@ -4,7 +4,7 @@
 #include <cfenv>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 StatusCode status_code(RTCError error) {
@@ -95,4 +95,4 @@ Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution
   return monitor.take();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

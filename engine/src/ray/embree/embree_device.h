@@ -14,7 +14,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct SceneRelease {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -55,4 +55,4 @@ Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std:
 /// Commits a scene in the caller's arena, for any rounding mode of the caller's thread. Errors: cancelled, Embree's own.
 Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 #include "ray/embree/embree_ray.h"
 #include "ray/leaf/leaf_tracer.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The data that a call of Embree carries to the callbacks. Embree's context comes first, so that a pointer to it is
@@ -195,4 +195,4 @@ const LeafTracer& EmbreeLeaves::tracer() const { return state_->tracer; }
 
 std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 // Padding of boxes for rays in float, in scene coordinates.
 // - The line's start and direction round by 2^-24, of at most 3.5 and over at most 4: 5e-7 per component.
@@ -49,4 +49,4 @@ void set_packet(std::size_t count, const Line& line, RTCRayHit16& hit, int (&val
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 
 #include "ray/embree/embree_device.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr unsigned flush_and_denormals_are_zero = 0x8040;
@@ -197,4 +197,4 @@ std::size_t EmbreeScene::memory_bytes() const {
   return state_->monitor.bytes() + state_->grids.capacity() * sizeof(RTCGrid);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

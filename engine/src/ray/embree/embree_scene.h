@@ -14,7 +14,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Grids of height x width vertices each, one after the other, 3 floats per vertex, rows (of equal height index)
 /// contiguous.
@@ -106,4 +106,4 @@ class EmbreeScene {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Bounds the distance of facets from a polynomial piece by (h^2 Muu + 2 h k Muv + k^2 Mvv) / 8, for triangles with
@@ -48,4 +48,4 @@ double facet_deviation(const BezierPatch& patch, double h, double k) {
   return std::min((points + 0.5 * farthest * weights) / lightest, farthest);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,10 +3,10 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns an upper bound on the distance between the patch and facets with corners on it, in parameter boxes of at
 /// most h x k.
 double facet_deviation(const BezierPatch& patch, double h, double k);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

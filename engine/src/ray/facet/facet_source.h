@@ -11,7 +11,7 @@
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class FacetSource {
  public:
@@ -38,4 +38,4 @@ Result<std::unique_ptr<FacetSource>> grid_facets(const PatchSet& set, int rate, 
 /// of a build: as of RayScene::make.
 std::unique_ptr<FacetSource> mesh_facets(const Mesh& mesh);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

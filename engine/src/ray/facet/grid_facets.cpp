@@ -8,7 +8,7 @@
 #include "ray/facet/facet_deviation.h"
 #include "ray/facet/facet_source.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t padding = 1;  // floats after the last vertex, which Embree reads as 16 bytes
@@ -54,4 +54,4 @@ Result<std::unique_ptr<FacetSource>> grid_facets(const PatchSet& set, int rate, 
   return std::unique_ptr<FacetSource>(std::make_unique<GridFacets>(*std::move(grid), rate));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

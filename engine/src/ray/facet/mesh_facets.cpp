@@ -10,7 +10,7 @@
 #include "ray/facet/facet_deviation.h"
 #include "ray/facet/facet_source.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status invalid(std::string message, std::size_t index) {
@@ -164,4 +164,4 @@ class MeshFacets final : public FacetSource {
 
 std::unique_ptr<FacetSource> mesh_facets(const Mesh& mesh) { return std::make_unique<MeshFacets>(mesh); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "ray/line/lane_vectors.h"
 #include "ray/line/orthonormal_basis.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void PacketRefiner::run(std::span<const RaySegment> segments, std::span<const FacetHit> facets) {
   found_ = 0;
@@ -70,4 +70,4 @@ SurfaceRoot PacketRefiner::root(std::size_t k, const RaySegment& segment, const 
           length(position - segment.start - s * segment.direction)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 #include "ray/line/ray_segment.h"
 #include "ray/line/set_view.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class PacketRefiner {
  public:
@@ -40,4 +40,4 @@ class PacketRefiner {
   kernel::PolishedRays rays_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

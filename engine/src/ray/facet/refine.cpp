@@ -8,7 +8,7 @@
 #include "ray/line/first_order.h"
 #include "ray/line/orthonormal_basis.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double overshoot = 0.25;  // how far outside [0,1] Newton may go before it comes back or changes the patch
@@ -156,4 +156,4 @@ bool Refiner::refine(const RaySegment& segment, std::uint32_t patch, double u, d
   return false;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A point r(u,v) of the surface and its distance from a ray; a root if the residual is rounding.
 struct SurfaceRoot {
@@ -52,4 +52,4 @@ class Refiner {
   double tolerance_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "base/infinity.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int parts_per_piece = 16;
@@ -87,4 +87,4 @@ KeptPart kept_part(const TrimRegion& region, std::span<const std::uint32_t> piec
   return kept;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/geometry.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct KeptPart {
   PatchUse use = PatchUse::whole;
@@ -43,4 +43,4 @@ struct KeptSquares {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

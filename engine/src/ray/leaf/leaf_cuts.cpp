@@ -9,7 +9,7 @@
 #include "ray/leaf/local_leaf.h"
 #include "ray/net/projected_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_halvings_per_side = 6, max_halvings_by_bend = 3, max_halvings_by_certificate = 5;
@@ -221,4 +221,4 @@ Cuts LeafCutter::flatten(int halvings, double max_bend) {
   return cuts_;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

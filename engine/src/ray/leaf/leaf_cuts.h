@@ -7,7 +7,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The number of halvings of a patch along each direction.
 struct Cuts {
@@ -52,4 +52,4 @@ class LeafCutter {
   std::vector<double> nets_, halves_, part_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

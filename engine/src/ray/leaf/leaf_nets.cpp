@@ -10,7 +10,7 @@
 #include "ray/leaf/local_leaf.h"
 #include "ray/net/projected_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t patches_per_task = 64;
@@ -153,4 +153,4 @@ Status LeafNets::update(const SetView& set, std::span<const std::uint32_t> patch
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Steps of Newton's method, in a patch's parameters, up to which the surface equals its tangent plane within rounding.
 constexpr double linear_step = 1e-9;
@@ -90,4 +90,4 @@ class LeafNets {
   std::size_t largest_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "ray/net/projected_net.h"
 #include "ray/net/root_certificate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 // These limits bound the time of a search. No result depends on them but for RayQuery::incomplete.
@@ -362,4 +362,4 @@ void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSp
   run<0, 0, false>(leaf, net, tolerance, space, query);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/line/ray_query.h"
 #include "ray/net/projected_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The memory of searches, for one thread at a time.
 class SearchSpace {
@@ -76,4 +76,4 @@ bool set_gain(const NetValue& f, double du, double dv, LeafRoot& root);
 /// through it.
 void search_leaf(const Leaf& leaf, const double* net, double tolerance, SearchSpace& space, RayQuery& query);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

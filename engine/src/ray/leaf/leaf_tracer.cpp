@@ -9,7 +9,7 @@
 #include "ray/net/seen_point.h"
 #include "ray/seam/spawn_root.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 // Padding of s in a kernel: twice the rounding of the ray's start and direction in float (embree_ray.h).
@@ -273,4 +273,4 @@ bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, Ray
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

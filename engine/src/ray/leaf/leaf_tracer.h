@@ -14,7 +14,7 @@
 #include "ray/seam/lazy_adjacency.h"
 #include "ray/tube/edge_tubes.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the ray of a query in the kernels' form.
 kernel::RayProbe probe_of(const RayQuery& query);
@@ -82,4 +82,4 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   bool take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "parallel/parallel_for.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t leaves_per_task = 64;
@@ -180,4 +180,4 @@ TrimSide LeafTrims::side_of(const LeafRoot& root) const {
   return side;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

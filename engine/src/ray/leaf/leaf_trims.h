@@ -13,7 +13,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Const calls from any number of threads.
 class LeafTrims final : public RootSides {
@@ -48,4 +48,4 @@ class LeafTrims final : public RootSides {
   std::vector<KeptSquares> squares_;  ///< `[leaf]`
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

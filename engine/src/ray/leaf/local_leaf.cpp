@@ -8,7 +8,7 @@
 #include "ray/net/cubic_net.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double unit = 0x1p-24;  // rounding of float
@@ -200,4 +200,4 @@ void make_local_leaf(const NetShape<0, 0>& shape, bool rational, const double* n
   LeafMaker(shape, rational, net, leaf).make();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Status PatchRegions::build(const SetView& set, const Execution& execution) {
   trims_ = set.impl().trims;
@@ -41,4 +41,4 @@ std::size_t PatchRegions::memory_bytes() const {
   return bytes;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/status.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Const calls from any number of threads.
 class PatchRegions {
@@ -42,4 +42,4 @@ class PatchRegions {
   std::vector<std::uint32_t> regions_of_;  ///< `[patch]`: into `regions_`, or no_id
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "ray/net/projected_net.h"
 #include "ray/net/seen_point.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using kernel::PolishJob;
@@ -110,4 +110,4 @@ void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, cons
   (patch.is_rational() ? kernels.packets->polish_low_rational : kernels.packets->polish_cubic)(job, rays, lanes);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

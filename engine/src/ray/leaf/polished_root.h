@@ -5,7 +5,7 @@
 #include "ray/leaf/leaf_nets.h"
 #include "ray/line/ray_query.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The start of Newton's method in a patch, how far from there the root can be, and where it must lie.
 struct RootStart {
@@ -52,4 +52,4 @@ bool polished_side_by_side(const BezierPatch& patch);
 void polish_side_by_side(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels,
                          const RootStart& bounds, kernel::PolishedRays& rays, unsigned lanes);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

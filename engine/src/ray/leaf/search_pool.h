@@ -7,7 +7,7 @@
 
 #include "base/aligned.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A part of a leaf's square that may hold roots.
 struct SearchBox {
@@ -56,4 +56,4 @@ class SearchPool {
   std::vector<std::unique_ptr<SearchMemory>> idle_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A ray in Embree's form: every number finite, 0 <= tnear <= tfar, direction not zero.
 struct FacetRay {
@@ -11,4 +11,4 @@ struct FacetRay {
   float tnear = 0, tfar = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

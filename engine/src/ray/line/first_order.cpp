@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Values = std::array<double, max_degree + 1>;
@@ -98,4 +98,4 @@ FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3&
   return polynomial<0, 0>(patch, u, v, origin);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

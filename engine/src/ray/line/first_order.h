@@ -3,7 +3,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct FirstOrder {
   Vec3 position, du, dv;
@@ -14,4 +14,4 @@ struct FirstOrder {
 /// with evaluate_jet up to rounding.
 FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3& origin = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

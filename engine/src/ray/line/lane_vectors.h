@@ -5,7 +5,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 template <std::size_t Size>
 void put(const Vec3& v, double (&to)[3][Size], std::size_t k) {
@@ -16,4 +16,4 @@ Vec3 get(const double (&from)[3][Size], std::size_t k) {
   return {from[0][k], from[1][k], from[2][k]};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

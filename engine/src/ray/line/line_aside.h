@@ -10,7 +10,7 @@
 #include "ray/line/ray_line.h"
 #include "ray/line/ray_query.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::size_t ways_aside = 8;  ///< directions in which a line is moved
 inline constexpr double far_aside = 2.5;      ///< how far, as a multiple of the edge's gap: out of its tube
@@ -47,4 +47,4 @@ RootsAside roots_aside(RayQuery& query, const Box3& box, const Trace& trace) {
   return best;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

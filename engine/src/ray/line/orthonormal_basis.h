@@ -5,7 +5,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Two unit vectors that make an orthonormal basis with the unit vector d (Duff et al., Building an orthonormal basis,
 /// revisited, JCGT 6(1), 2017).
@@ -19,4 +19,4 @@ struct OrthonormalBasis {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

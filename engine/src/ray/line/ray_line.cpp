@@ -7,7 +7,7 @@
 
 #include "ray/line/orthonormal_basis.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -171,4 +171,4 @@ RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& fr
   return line;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

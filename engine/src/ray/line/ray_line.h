@@ -7,7 +7,7 @@
 #include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The coordinates of an exact scene: x = scale (p - centre), scale a power of two. The scene's box lies in [-1,1]^3,
 /// and its longer side is at least 1 long: lengths there are shares of the model's size.
@@ -76,4 +76,4 @@ struct Placement {
 /// number, relative to the model's size.
 RayLine line_of(const Ray& ray, const Placement& placement, const SceneFrame& frame, const Box3& box);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include "ray/line/lane_vectors.h"
 #include "ray/line/ray_segment.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 RayTurn::RayTurn(const SceneFrame& frame, const Box3& box, const kernel::RayKernels& kernels)
     : frame_(frame), box_(box), kernels_(kernels) {
   const Box3 room = clipping_box(box);
@@ -47,4 +47,4 @@ void RayTurn::set_one(const Ray& ray, std::size_t k) {
   lines_[k] = valid_[k] ? line_of(ray, frame_, box_) : RayLine{};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

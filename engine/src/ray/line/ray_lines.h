@@ -7,7 +7,7 @@
 #include "kernel/ray/ray_kernels.h"
 #include "ray/line/ray_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks the rays of a turn and prepares their lines, by vectors if the machine has them.
 class RayTurn {
@@ -36,4 +36,4 @@ class RayTurn {
   std::array<bool, size> valid_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 #include "tessera/ray_scene.h"
 #include "tessera/trim_region.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 constexpr double no_part = std::numeric_limits<double>::infinity();
 constexpr double parameter_rounding = 1e-15;  // in a patch's parameters
@@ -211,4 +211,4 @@ struct RayQuery {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double segment_rounding = 4 * std::numeric_limits<double>::epsilon();  // of an s, by its distance
@@ -74,4 +74,4 @@ RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margi
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 static_assert(max_ray_component == kernel::RayBundle::max_component);
 
@@ -31,4 +31,4 @@ struct RaySegment {
 /// [tnear, tfar] say, because facets lie before or behind the surface.
 RaySegment cut(const Ray& ray, const Vec3& origin, const Box3& box, double margin);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "block/patch_set_impl.h"
 #include "tessera/patch_set.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class SetView {
  public:
@@ -35,4 +35,4 @@ class SetView {
   const PatchSet::Impl* set_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 
 #include "ray/net/projected_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct NetParameters {
   double u = 0, v = 0;
@@ -59,4 +59,4 @@ inline NetParameters bounded_step(const NetValue& f, NetParameters from) {
   return best;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t most = max_degree + 1;
@@ -135,4 +135,4 @@ CubicNet cubic_net(const NetShape<0, 0>& shape, const FourNets& net) {
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

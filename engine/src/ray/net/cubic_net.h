@@ -8,7 +8,7 @@
 #include "ray/net/projected_net.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Four components of a net, `[component][i * columns + j]`.
 using FourNets = std::array<std::array<double, (max_degree + 1) * (max_degree + 1)>, 4>;
@@ -27,4 +27,4 @@ struct CubicNet {
 /// |T_k| <= 1 and |T_k'| <= k^2.
 CubicNet cubic_net(const NetShape<0, 0>& shape, const FourNets& net);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "ray/net/projected_net.h"
 #include "ray/net/root_certificate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Two combinations of x and y at a right angle, g = a x + b y and h = a y - b x. g grows the fastest along p = u or v,
 /// and h does not grow along p in the mean. Parameters are the box's own, relative to a point where g nearly vanishes:
@@ -138,4 +138,4 @@ class EdgeOn {
   double length_ = 0, min_length_ = 0;  ///< of g_p: mean, lower bound
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "ray/line/ray_line.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The degrees of a net. M, N: the degrees if the compiler knows them, else 0.
 template <int M, int N>
@@ -160,4 +160,4 @@ NetValue evaluate(const NetShape<M, N>& shape, const double* net, double u, doub
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/net/bounded_step.h"
 #include "ray/net/projected_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The lowest and highest of some coefficients.
 struct Hull {
@@ -122,4 +122,4 @@ inline double root_distance(const RootCertificate& certificate, const NetValue& 
   return length / (1 - certificate.contraction()) * (1 + 1e-15);  // three roundings, of 2^-53 each
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

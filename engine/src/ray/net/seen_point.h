@@ -5,7 +5,7 @@
 #include "ray/line/ray_line.h"
 #include "ray/net/projected_net.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Both are in the scene's coordinates.
 inline NetValue seen(const FirstOrder& at, const RayLine& line) {
@@ -17,4 +17,4 @@ inline NetValue seen(const FirstOrder& at, const RayLine& line) {
   return f;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

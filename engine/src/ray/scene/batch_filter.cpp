@@ -7,7 +7,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 HitVerdict BatchFilter::ask(const HitCandidate& candidate) noexcept {
   if (stopped()) return HitVerdict::stop;
@@ -43,4 +43,4 @@ HitVerdict SceneFilter::decide(const RayQuery& query, const LeafRoot& root) cons
                        .patch_v = root.v});
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The filter of one call. Any number of threads.
 class BatchFilter {
@@ -50,4 +50,4 @@ class SceneFilter final : public RootFilter {
   std::uint32_t instance_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/scene/batch_filter.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::size_t rays_per_turn = 16;
 
@@ -91,4 +91,4 @@ void for_turns(const RayBatch& batch, std::size_t begin, std::size_t end, const 
     body(first, std::min(rays_per_turn, end - first));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "ray/line/ray_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns whether lines are worth a packet: there are enough, they pass near each other and run nearly the same way.
 /// line(k) is line k of `count`.
@@ -21,4 +21,4 @@ bool worth_a_packet(std::size_t count, const Line& line) {
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Status check_exact(const RaySceneOptions& options) {
   if (const int pieces = options.pieces; pieces != 1 && pieces != 2 && pieces != 4 && pieces != 8) {
@@ -33,4 +33,4 @@ Result<Box3> frame_box(const RaySceneOptions& options, const Box3& box) {
   return *options.box;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -30,7 +30,7 @@
 #include "ray/seam/lazy_adjacency.h"
 #include "ray/seam/nearest_root.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double default_tolerance = 2e-12;  // share of the size
@@ -396,4 +396,4 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
   return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

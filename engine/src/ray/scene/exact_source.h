@@ -12,7 +12,7 @@
 #include "ray/scene/batch_layout.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Limits steps to the range of Hit::steps.
 inline std::uint16_t saturated_u16(std::uint32_t steps) { return static_cast<std::uint16_t>(std::min(steps, 0xffffu)); }
@@ -48,4 +48,4 @@ class ExactSource {
   virtual void hits_of(RayQuery& query, std::vector<Hit>& hits) const = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -18,7 +18,7 @@
 #include "ray/scene/surface_hit.h"
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_rate = 4096;
@@ -313,4 +313,4 @@ Result<std::unique_ptr<RayScene::Impl>> make_mesh_scene(const PatchSet& set, con
   return scene_of(set, mesh_facets(mesh), options, true);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/line/ray_query.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A ray on its way through the instances, and the nearest root found so far.
 struct InstanceLane {
@@ -51,4 +51,4 @@ struct InstanceLane {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -21,7 +21,7 @@
 #include "ray/scene/instance_lane.h"
 #include "ray/scene/ray_scene_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -365,4 +365,4 @@ Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayI
   return std::unique_ptr<RayScene::Impl>(std::make_unique<InstanceScene>(std::move(out), *std::move(boxes)));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

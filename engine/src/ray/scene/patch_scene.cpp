@@ -10,7 +10,7 @@
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Positions are convex combinations relative to the box's centre (first_order.h), or absolute: at most 4 (m + n) + 8
 /// roundings of the largest coordinate (Farouki and Rajan, CAGD 4, 1987, sec. 5).
@@ -44,4 +44,4 @@ Result<Hit> PatchScene::resolve(std::uint32_t patch, double u, double v) const {
   return hit;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 template <class T>
@@ -221,4 +221,4 @@ Status occluded(const RayScene& scene, const RayViews<double>& rays, const View1
   return occluded_of(scene, rays, occluded, options, execution);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double smallest_patch = 1e-15;
@@ -208,4 +208,4 @@ Result<unsigned> attach(const RayScene& scene, RTCScene to) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t rays_per_task = 512;
@@ -255,4 +255,4 @@ Result<std::vector<double>> RayScene::edge_gaps() const {
 Box3 RayScene::box() const { return impl_->box(); }
 std::size_t RayScene::memory_bytes() const { return impl_->memory_bytes(); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/ray_scene.h"
 #include "tessera/strided_view.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class ExactSource;
 
@@ -104,4 +104,4 @@ Result<std::unique_ptr<RayScene::Impl>> make_mesh_scene(const PatchSet& set, con
 Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, const RaySceneOptions& options);
 Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayInstance> instances);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

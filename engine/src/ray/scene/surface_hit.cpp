@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Sets the normal of unit_normal, from the given derivatives if these are clearly regular.
@@ -33,4 +33,4 @@ void set_surface_point(const SetView& set, double size, double unit, std::uint32
   if (parts.normal) set_normal(set.patch(patch), size, u, v, at, hit);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "ray/scene/batch_layout.h"
 #include "tessera/ray_scene.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Sets kind, patch, surface and parameters; (u,v) are the patch's, in [0,1]^2. Returns the patch's part of the
 /// surface's domain.
@@ -25,4 +25,4 @@ inline const Domain& set_place(const SetView& set, std::uint32_t patch, double u
 void set_surface_point(const SetView& set, double size, double unit, std::uint32_t patch, double u, double v,
                        const FirstOrder& at, Hit& hit, HitParts parts = {});
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

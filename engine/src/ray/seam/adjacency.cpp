@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// One border of a patch as a sequence of control points.
@@ -79,4 +79,4 @@ Adjacency::Adjacency(const SetView& set) : links_(set.patch_count()) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "ray/line/set_view.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The four edges in a fixed order, for indices.
 inline constexpr std::array<Edge, 4> all_edges{Edge::u0, Edge::u1, Edge::v0, Edge::v1};
@@ -38,4 +38,4 @@ class Adjacency {
   std::vector<std::array<EdgeLink, 4>> links_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -13,7 +13,7 @@
 
 #include "ray/seam/root_fan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 class Sameness {
@@ -306,4 +306,4 @@ void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<L
   std::stable_sort(roots.begin(), roots.end(), [](const LeafRoot& a, const LeafRoot& b) { return a.s < b.s; });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Sorts by s and drops roots that repeat another: on one patch at the same place, or on two patches at matching places
 /// of a shared border, or at a pole, in any chain of such steps (around a vertex or a pole).
@@ -23,4 +23,4 @@ namespace tessera::inline abi_0_1 {
 /// Nearness in s proves nothing: roots that are merely near are kept.
 void keep_distinct(const SetView& set, const Adjacency& adjacency, std::vector<LeafRoot>& roots);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

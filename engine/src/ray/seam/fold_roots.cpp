@@ -9,7 +9,7 @@
 #include "ray/net/seen_point.h"
 #include "ray/seam/root_fan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The patch beside a place on its border, to first order, as seen along the line.
@@ -143,4 +143,4 @@ void complete_folds(const SetView& set, const Adjacency& borders, const SceneFra
   FoldCompletion(set, borders, frame, line, sides, roots).run();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

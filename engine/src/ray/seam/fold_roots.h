@@ -7,7 +7,7 @@
 #include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Adds roots where patches that share a border fold over each other, seen along the line, so that a line crosses a
 /// closed body an even number of times. `roots` are distinct (distinct_roots.h), and stay in order.
@@ -24,4 +24,4 @@ namespace tessera::inline abi_0_1 {
 void complete_folds(const SetView& set, const Adjacency& borders, const SceneFrame& frame, const RayLine& line,
                     const RootSides& sides, std::vector<LeafRoot>& roots);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

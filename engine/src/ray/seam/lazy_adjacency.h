@@ -8,7 +8,7 @@
 
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Const calls from any number of threads.
 class LazyAdjacency {
@@ -38,4 +38,4 @@ class LazyAdjacency {
   mutable std::atomic<const Adjacency*> made_ = nullptr;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

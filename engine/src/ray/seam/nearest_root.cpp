@@ -3,7 +3,7 @@
 #include "ray/net/bounded_step.h"
 #include "ray/net/seen_point.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
                         double u, double v) {
@@ -31,4 +31,4 @@ LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const
   return root;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

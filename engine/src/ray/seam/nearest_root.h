@@ -6,10 +6,10 @@
 #include "ray/line/ray_query.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the point of the patch nearest to the line, from (u,v) on by Newton's method in the square; not certified.
 LeafRoot nearest_to_ray(const BezierPatch& patch, const SceneFrame& frame, const RayLine& line, std::uint32_t index,
                         double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 RootFan::RootFan(const SetView& set, const Adjacency& borders, const LeafRoot& root, double apart)
     : set_(set), borders_(borders), apart_(apart) {
@@ -30,4 +30,4 @@ void RootFan::add(const LeafRoot& place) {
   if (count_ < most && std::none_of(places_.begin(), places_.begin() + count_, is_there)) places_[count_++] = place;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 
 #include "ray/seam/root_places.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The places of a root beyond all borders, vertices and poles that it reaches. `apart` bounds how far a point for the
 /// same root can be off across the line.
@@ -30,4 +30,4 @@ class RootFan {
   std::size_t count_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Functions along an edge, an index into all_edges: of the parameter that varies there.
 inline double along_edge(const LeafRoot& root, int edge) { return edge < 2 ? root.v : root.u; }
@@ -65,4 +65,4 @@ inline LeafRoot carried_over(const LeafRoot& root, int edge, const EdgeLink& lin
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

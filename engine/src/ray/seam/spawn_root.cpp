@@ -8,7 +8,7 @@
 #include "ray/seam/nearest_root.h"
 #include "ray/seam/root_fan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double noise = 4e-15;  // rounding of points at the scale of the scene, and of distances between them
@@ -188,4 +188,4 @@ OriginRoot decide_origin(const SetView& set, const Adjacency* borders, const Sce
   return OriginRoot::other;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

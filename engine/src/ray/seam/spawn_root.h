@@ -5,7 +5,7 @@
 #include "ray/line/set_view.h"
 #include "ray/seam/adjacency.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Decides this for a root on a line that leaves the surfaces within line.spawn of its origin, in the frame's
 /// coordinates.
@@ -26,4 +26,4 @@ namespace tessera::inline abi_0_1 {
 OriginRoot decide_origin(const SetView& set, const Adjacency* borders, const SceneFrame& frame, const RayLine& line,
                          const LeafRoot& root);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int steps = 4;  // towards the nearest point of a curve that is nearly its chord
@@ -59,4 +59,4 @@ CentreCurve::Place CentreCurve::nearest(const LoopPoint& point, double s) const 
   return best;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 
 #include "ray/tube/edge_tubes.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Refers to the chords of a curve, in the order of the edge's parameters.
 class CentreCurve {
@@ -39,4 +39,4 @@ class CentreCurve {
   std::vector<double> ends_;  ///< the edge's parameters at the ends of chords
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "ray/line/first_order.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The index into all_edges of a patch's side.
@@ -256,4 +256,4 @@ std::uint32_t EdgeCurves::vertex_at(std::uint32_t face, const TrimPiece& piece, 
   return is_same(edge, s, is_last ? edge.range.to : edge.range.from) ? (is_last ? edge.end : edge.start) : no_id;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

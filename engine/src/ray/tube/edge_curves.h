@@ -13,7 +13,7 @@
 #include "ray/seam/adjacency.h"
 #include "tess/closing/edge_runs.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A point of a face's loop.
 struct LoopPoint {
@@ -114,4 +114,4 @@ class EdgeCurves {
   std::vector<Bridge> bridges_;  ///< by growing faces
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

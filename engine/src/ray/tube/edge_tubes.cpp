@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "ray/tube/centre_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t edges_per_task = 8;
@@ -281,4 +281,4 @@ std::vector<double> EdgeTubes::gaps() const {
   return gaps;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -27,7 +27,7 @@
 #include "tessera/execution.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A part of a curve along an edge that is nearly straight.
 struct TubeChord {
@@ -108,4 +108,4 @@ class EdgeTubes {
   std::vector<Tube> tubes_;                 ///< edge by edge
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

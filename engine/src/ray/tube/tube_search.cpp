@@ -7,7 +7,7 @@
 #include "base/infinity.h"
 #include "ray/tube/edge_tubes.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_points = 4096;  // of curves, for one ray and one tube
@@ -165,4 +165,4 @@ void EdgeTubes::search(unsigned index, RayQuery& query) const {
   query.take_seam(first, tube.gap);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double largest_coefficient = 1e6;  // rounding of larger ones would hide the conditions
@@ -193,4 +193,4 @@ Result<std::array<double, 2>> Blend::values_at(double t) const {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

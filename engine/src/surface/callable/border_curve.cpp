@@ -9,7 +9,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -112,4 +112,4 @@ Result<CurveJet> evaluate_jet(const BorderCurve& border, double t) {
   return evaluate_jet(std::get<ParametricCurve>(border), t);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 
 #include "tessera/parametric_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Names in messages: borders in the order of CoonsBorders, and the curves of ruled surfaces.
 inline constexpr const char* coons_border_names[] = {"border C1", "border C2", "border D1", "border D2"};
@@ -30,4 +30,4 @@ Result<CurveJet> evaluate_jet(const BorderCurve& border, double t, const char* n
 /// Checks that both are on the same interval. Errors: invalid_argument (names both).
 Status check_same_interval(const BorderCurve& a, const char* name_a, const BorderCurve& b, const char* name_b);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns what `function` returns. An exception becomes a Status: out_of_memory or else invalid_argument, with a
 /// message that begins with place(), for example "the curve at t = 0.5".
@@ -38,4 +38,4 @@ double bound_of(Function&& function) {
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

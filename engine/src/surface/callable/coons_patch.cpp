@@ -11,7 +11,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::array<const BorderCurve*, 4> all_of(const CoonsBorders& b) { return {&b.c1, &b.c2, &b.d1, &b.d2}; }
@@ -161,4 +161,4 @@ Result<Vec3> position(const CoonsPatch& patch, double u, double v) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

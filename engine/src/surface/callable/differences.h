@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Seven parameters around t that stay within an interval, and the weights of the values there in the first and second
 /// derivative at t. The weights are those of the sextic through the values (Fornberg, Generation of finite difference
@@ -53,4 +53,4 @@ struct DifferenceStencil {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

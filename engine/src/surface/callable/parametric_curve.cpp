@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 auto place_at(double t) {
@@ -83,4 +83,4 @@ Result<CurveJet> evaluate_jet(const ParametricCurve& curve, double t) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

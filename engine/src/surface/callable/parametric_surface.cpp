@@ -11,7 +11,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 auto place_at(double u, double v) {
@@ -129,4 +129,4 @@ Result<SurfaceJet> evaluate_jet(const ParametricSurface& surface, double u, doub
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

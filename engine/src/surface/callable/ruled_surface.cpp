@@ -5,7 +5,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// A point's parameter along the curves, and the weights of the two curves.
@@ -82,4 +82,4 @@ Result<Vec3> position(const RuledSurface& surface, double u, double v) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "base/overloaded.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 std::string_view kind_name(const Surface& surface) {
   return std::visit(Overloaded{
                         [](const BezierPatch& s) { return s.is_rational() ? "rational Bezier patch" : "Bezier patch"; },
@@ -47,4 +47,4 @@ std::array<double, 2> grid_parameters(const Surface& surface, double u, double v
   return {grid.u, grid.v};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -12,7 +12,7 @@
 // A basis holds three matrices: M itself, C = M_B^{-1} M, and C^{-1}. Each named basis has closed forms of all three,
 // with entries that are whole numbers or right to the last bit. Only the user's own matrices are inverted.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Entries = std::vector<double>;
@@ -220,4 +220,4 @@ Result<BasisMatrix> BasisMatrix::custom(int degree, std::span<const double> entr
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 std::string size_text(int degree_u, int degree_v) {
@@ -65,4 +65,4 @@ Box3 BezierPatch::hull_box() const {
 
 EdgeMask BezierPatch::collapsed_edges() const { return tessera::collapsed_edges(degree_u_, degree_v_, points()); }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "surface/net/validate.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 Status check_interval(double from, double to, const std::string& name) {
   const std::string interval = name + ", [" + text(from) + ", " + text(to) + "], ";
@@ -72,4 +72,4 @@ Status check_finite(const SurfaceJet& jet, double u, double v) {
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks that vectors in rows of `columns` are finite; `what` names one ("geometry element"). Errors: non_finite
 /// (index = the vector).
@@ -29,4 +29,4 @@ std::string text_at(double u, double v);
 Status check_finite(const Vec3& position, double u, double v);
 Status check_finite(const SurfaceJet& jet, double u, double v);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the edges whose control points, `[i][j]`, all coincide by ==.
 inline EdgeMask collapsed_edges(int degree_u, int degree_v, std::span<const Vec3> points) {
@@ -24,4 +24,4 @@ inline EdgeMask collapsed_edges(int degree_u, int degree_v, std::span<const Vec3
   return edges;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

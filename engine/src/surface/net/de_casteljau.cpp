@@ -6,7 +6,7 @@
 
 // Farin, Curves and Surfaces for CAGD, 5th ed., sec. 4.2 (curves), 13.3 (rational), 14.1 (bilinear), 14.3 (curve-wise).
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t max_points = max_degree + 1;
@@ -100,4 +100,4 @@ Vec3 de_casteljau_rational(const BezierPatch& patch, double u, double v) {
   return rational_curve_point(patch.degree_v(), across, v).point;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "basis/bernstein.h"
 #include "surface/net/homogeneous.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// B_{i,n-k}(t) for k = 0, 1, 2: the factors in the sums of the derivatives of order k.
 struct LoweredBernstein {
@@ -70,4 +70,4 @@ double derivative_magnitude(const HomogeneousNet& net, const LoweredBernstein& u
   return falling_factorial<A>(u.degree) * falling_factorial<B>(v.degree) * sum;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,7 +1,7 @@
 #include "surface/net/difference_net.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v) {
   const HomogeneousNet net(patch, nearest_corner(patch, u, v));
@@ -17,4 +17,4 @@ SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v) {
           net.scale * jet.duu,        net.scale * jet.duv, net.scale * jet.dvv};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

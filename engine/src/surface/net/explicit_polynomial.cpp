@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status check_degree(const char* direction, int degree) {
@@ -79,4 +79,4 @@ SurfaceJet evaluate_jet(const ExplicitPolynomial& surface, double u, double v) {
   return {{u, v, z(0, 0)}, {1, 0, z(1, 0)}, {0, 1, z(0, 1)}, {0, 0, 2 * z(2, 0)}, {0, 0, z(1, 1)}, {0, 0, 2 * z(0, 2)}};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 SurfaceJet project(const Homogeneous& a, const Homogeneous& au, const Homogeneous& av, const Homogeneous& auu,
                    const Homogeneous& auv, const Homogeneous& avv) {
@@ -42,4 +42,4 @@ HomogeneousNet::HomogeneousNet(const BezierPatch& patch, const Vec3& origin)
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The point (w x, w y, w z, w). Uninitialised by default, because nets of the largest degree live on the stack.
 struct Homogeneous {
@@ -57,4 +57,4 @@ inline const Vec3& nearest_corner(const BezierPatch& patch, double u, double v) 
   return patch.point(u > 0.5 ? patch.degree_u() : 0, v > 0.5 ? patch.degree_v() : 0);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 // With r_u = a e1 and r_v = b e1 + c e2 in an orthonormal basis e1, e2 of the tangent plane, the second form in it is S
 // = J^-T II J^-1, J = [[a, b], [0, c]] (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3).
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The basis with r_u = a e1, r_v = b e1 + c e2.
@@ -88,4 +88,4 @@ LocalGeometry local_geometry(const BezierPatch& patch, double u, double v, const
   return result;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

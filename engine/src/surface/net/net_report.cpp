@@ -10,7 +10,7 @@
 // With r = A / w: w^2 r_u = A_u w - A w_u. Up to multiples of r_u and r_v, which do not change det(r_u, r_v, r_uv), w^2
 // r_uv = A_uv w - A w_uv. So the numerators are polynomials, and the hulls of their Bernstein coefficients bound them.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Scalars = BernsteinNet<double>;
@@ -90,4 +90,4 @@ Result<NetReport> measure_net(const BezierPatch& patch, const NetOptions& option
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Patches that are filled one by one, from any number of threads, and then taken. Points and weights must be valid for
 /// BezierPatch::polynomial or rational. A patch keeps its weights even if they are all equal, because rationality is a
@@ -81,4 +81,4 @@ class PatchPieces {
   double* weights_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

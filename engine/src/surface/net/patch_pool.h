@@ -7,7 +7,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The memory for the points of a file's patches. A block lives as long as a patch that has points in it.
 class PatchPool {
@@ -46,4 +46,4 @@ class PatchPool {
   std::size_t size_ = 0, used_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Real = long double;
@@ -74,4 +74,4 @@ SurfaceJet evaluate_jet(const TensorPatch& patch, double u, double v) {
           blended(patch, f, g, 2, 0, a * a), blended(patch, f, g, 1, 1, a * b), blended(patch, f, g, 0, 2, b * b)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 // Near a point, N(u + h, v + k) = r_u x r_v + h D_u + k D_v + O(h^2 + k^2) with D_u = r_uu x r_v + r_u x r_uv and
 // D_v = r_uv x r_v + r_u x r_vv. Where r_u x r_v vanishes, the directions (h, k) that lead into the patch decide.
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Parameters within this distance of an end are seen only from inside the patch.
@@ -85,4 +85,4 @@ UnitNormal unit_normal(const BezierPatch& patch, double u, double v) {
   return limit.result();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Weights below this share of the largest one underflow in their products and ratios.
@@ -56,4 +56,4 @@ bool all_equal(std::span<const double> weights) {
   return std::all_of(weights.begin(), weights.end(), [&](double weight) { return weight == weights[0]; });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

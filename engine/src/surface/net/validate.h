@@ -8,7 +8,7 @@
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns how messages name element k of a list: "[i][j]".
 using Place = FunctionRef<std::string(std::size_t k)>;
@@ -25,4 +25,4 @@ Status check_weights(std::span<const double> weights, Place place);
 /// Returns whether all weights are equal by ==, so that the surface is polynomial.
 bool all_equal(std::span<const double> weights);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

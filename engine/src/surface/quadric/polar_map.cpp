@@ -6,7 +6,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
@@ -68,4 +68,4 @@ SurfaceJet PolarMap::chain_rule(const SurfaceJet& p, double rho, double theta) c
   return jet;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 // eigenvalue is not 0 (any text on analytic geometry; Farin and Hansford, Practical Linear Algebra, on quadratic
 // forms).
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// One principal axis, with the square lambda x^2 and the linear term 2 slope x along it.
@@ -260,4 +260,4 @@ Result<Quadric> Quadric::make(const QuadricCoefficients& q, const QuadricOptions
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,6 +1,6 @@
 #include "tessera/quadric.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 std::string_view name(QuadricKind kind) {
   switch (kind) {
@@ -105,4 +105,4 @@ Quadric::Diagonal Quadric::diagonal() const {
   return {{}, {}, 1};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/quadric.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -156,4 +156,4 @@ QuadricParameters grid_parameters(const QuadricPiece& piece, double u, double v)
           piece.sheet()};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
@@ -153,4 +153,4 @@ double canonical_parameter(Profile profile, double from, double to, double t) {
   return profile_parameter(profile, a, b, t == b ? 1 : (t - a) / (b - a));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

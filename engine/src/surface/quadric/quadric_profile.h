@@ -6,7 +6,7 @@
 
 #include "tessera/quadric.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The two functions of a canonical parameter t that make the parametrisation.
 enum class Profile : std::uint8_t {
@@ -61,4 +61,4 @@ GridParameter grid_parameter(Profile profile, double from, double to, double t);
 /// Converts a parameter of the grid to the canonical one: the inverse of grid_parameter().
 double canonical_parameter(Profile profile, double from, double to, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

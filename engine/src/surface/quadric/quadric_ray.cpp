@@ -4,7 +4,7 @@
 
 #include "tessera/quadric.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
@@ -101,4 +101,4 @@ QuadricHits intersect(const QuadricPiece& piece, const Vec3& origin, const Vec3&
   return hits;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status check_count(std::size_t count_u, std::size_t count_v, std::size_t count, const char* what) {
@@ -114,4 +114,4 @@ SurfaceJet evaluate_jet(const BSplineSurface& surface, double u, double v) {
           frame.vector(jet.duu),        frame.vector(jet.duv), frame.vector(jet.dvv)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr auto in_list = [](std::size_t k) { return "[" + std::to_string(k) + "]"; };
@@ -117,4 +117,4 @@ Vec3 position(const Curve& curve, double t) {
   return acting.frame.position(curve.is_rational() ? a.project() : a.vector());
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

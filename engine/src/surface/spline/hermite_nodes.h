@@ -4,7 +4,7 @@
 #include "surface/net/checks.h"
 #include "tessera/hermite_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks that there are at least two nodes each way, as many as the grid has, with four finite vectors each.
 Status check_nodes(std::size_t count_u, std::size_t count_v, std::span<const HermiteNode> nodes);
@@ -14,4 +14,4 @@ HermitePatch::Grid geometry_of(const HermitePatch::Corners& corners);
 /// Evaluates the patch with this geometry over [0,1]^2.
 SurfaceJet hermite_jet(const HermitePatch::Grid& geometry, double s, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

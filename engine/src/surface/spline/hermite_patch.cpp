@@ -11,7 +11,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Grid = HermitePatch::Grid;
@@ -264,4 +264,4 @@ SurfaceJet evaluate_jet(const HermitePatch& patch, double u, double v) {
   return {jet.position, a * jet.du, b * jet.dv, (a * a) * jet.duu, (a * b) * jet.duv, (b * b) * jet.dvv};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

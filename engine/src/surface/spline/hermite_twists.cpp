@@ -5,7 +5,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The nodes with their knots.
@@ -83,4 +83,4 @@ Result<std::vector<HermiteNode>> estimate_twists(TwistEstimate estimate, std::sp
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

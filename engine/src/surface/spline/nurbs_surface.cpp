@@ -7,7 +7,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 struct Frame {
@@ -165,4 +165,4 @@ Result<BSplineSurface> make_nurbs_cone(const Axis& axis, double bottom, double t
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

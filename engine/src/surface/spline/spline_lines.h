@@ -8,7 +8,7 @@
 #include "tessera/curve.h"
 #include "tessera/nurbs_surface.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline KnotLine line_of(const Curve& curve) {
   return {curve.degree(), curve.knots(), curve.domain().from, curve.domain().to};
@@ -25,4 +25,4 @@ std::vector<T> copied(std::span<const T> values) {
   return {values.begin(), values.end()};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 
 #include "surface/net/homogeneous.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The degree + 1 points k-p .. k that act on the span k.
 using SplineWindow = std::array<Homogeneous, max_degree + 1>;
@@ -71,4 +71,4 @@ inline SplineJet spline_jet(int degree, const double* span, double t, const Spli
           de_boor(std::max(degree - 2, 0), span, t, second)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

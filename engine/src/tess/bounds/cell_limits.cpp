@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The bounds of a patch's rectangles that matter for uniform segments: those with no other as large both ways.
@@ -125,4 +125,4 @@ std::optional<Rates> cheapest(const CellLimits& limits, int most) {
   return best;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "tess/bounds/chord_bound.h"
 #include "tess/bounds/turning_bound.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The limits that the triangles of one patch must keep. A bound that is null has no limit.
 struct CellLimits {
@@ -28,4 +28,4 @@ struct CellLimits {
 /// do.
 std::optional<Rates> cheapest(const CellLimits& limits, int most);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

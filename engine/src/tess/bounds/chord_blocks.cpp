@@ -8,7 +8,7 @@
 #include "kernel/table/kernel_table.h"
 #include "tess/bounds/rounded_up.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 static_assert(kernel::max_product_degree == max_product_degree);
@@ -231,4 +231,4 @@ ChordBlocks::Choice ChordBlocks::cheapest(const PatchSet::Impl& set, std::size_t
   return choice;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "block/patch_set_impl.h"
 #include "tess/bounds/chord_bound.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// ChordBound in float, rounded up, for the patches of a set with float Bernstein blocks.
 ///
@@ -119,4 +119,4 @@ class ChordBlocks {
   std::vector<Source> source_;  ///< `[block][lane]`
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tess/bounds/derivative_nets.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The quarters that each piece is made of: bit 2 i + j stands for quarter [i][j].
@@ -190,4 +190,4 @@ std::optional<Rates> ChordBound::cheapest(double tolerance, int most) const {
   return best;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -53,7 +53,7 @@
 #include "tess/cells/segments.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Bounds on second derivatives over a rectangle of the patch, in the patch's lengths over its own parameters.
 struct SecondDerivatives {
@@ -137,4 +137,4 @@ class ChordBound {
   Pieces pieces_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Cuts a Bezier curve of `count` points, `step` apart, at 1/2 by de Casteljau: `high` becomes its upper half, and
@@ -189,4 +189,4 @@ SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece
   return d;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "surface/net/homogeneous.h"
 #include "tess/bounds/chord_bound.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A net of homogeneous vectors, `[i][j]`.
 struct DerivativeNet {
@@ -49,4 +49,4 @@ struct DerivativePiece {
 SecondDerivatives bound_piece(const DerivativeNets& patch, const DerivativePiece& piece, double rounding,
                               bool products);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

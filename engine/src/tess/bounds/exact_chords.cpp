@@ -11,7 +11,7 @@
 #include "tess/bounds/flat_quad.h"
 #include "tess/bounds/rounded_up.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct ChordBlocks::Exact {
   /// The lanes whose bounds are found, which the kernel sees side by side.
@@ -196,4 +196,4 @@ void ChordBlocks::bound_exactly(const PatchSet::Impl& set, std::size_t block, co
             [&](std::size_t lane, const BezierPatch& patch) { take_flat(patch, block, lane); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

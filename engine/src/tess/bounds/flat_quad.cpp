@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Deviations up to this share of the longer diagonal count as rounding.
@@ -54,4 +54,4 @@ std::optional<double> flat_quad_deviation(const BezierPatch& patch) {
   return 4 * most + rounding;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

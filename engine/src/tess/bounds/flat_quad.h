@@ -5,7 +5,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns how far a patch may lie from the flat convex quadrilateral of its corners; empty if that is more than
 /// rounding.
@@ -15,4 +15,4 @@ namespace tessera::inline abi_0_1 {
 /// on the patch.
 std::optional<double> flat_quad_deviation(const BezierPatch& patch);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tess/cells/segment_law.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int parts = Segments::parts, half_parts = parts / 2;
@@ -215,4 +215,4 @@ std::optional<PatchSegments> graded_segments(const CellLimits& limits, Rates uni
   return best_found;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

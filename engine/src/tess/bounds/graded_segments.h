@@ -6,10 +6,10 @@
 #include "tess/bounds/cell_limits.h"
 #include "tess/cells/segments.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns segments that keep the limits with fewer cells than the `uniform` ones, by a rate of its own in each eighth
 /// of a parameter; empty if none are found. They never cross the middle if the limits are for halves.
 std::optional<PatchSegments> graded_segments(const CellLimits& limits, Rates uniform);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

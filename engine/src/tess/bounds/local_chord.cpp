@@ -7,7 +7,7 @@
 
 #include "tess/bounds/derivative_nets.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Half the width of a triangle's box. A float parameter lies up to 2^-25 beside i / rate.
@@ -240,4 +240,4 @@ double local_distance(const BezierPatch& patch, PatchSegments segments) {
   return most;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

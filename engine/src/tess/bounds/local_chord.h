@@ -9,7 +9,7 @@
 #include "tess/edges/segment_choices.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct DerivativeNets;
 
@@ -50,4 +50,4 @@ void find_fewer(const BezierPatch& patch, double distance, FunctionRef<bool(Patc
 /// Returns the distance that segments keep by such bounds.
 double local_distance(const BezierPatch& patch, PatchSegments segments);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "basis/bernstein.h"
 #include "surface/net/homogeneous.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Coefficients of a polynomial of the given degrees over B_i B_j times the binomials C(m,i) C(n,j): such nets multiply
@@ -121,4 +121,4 @@ NormalNet normal_net(const BezierPatch& patch) {
   return out;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Control points `[i][j]` of a vector field of the given degrees over [0,1]^2.
 struct VectorNet {
@@ -31,4 +31,4 @@ struct NormalNet {
 /// Where the field is zero the patch has no normal.
 NormalNet normal_net(const BezierPatch& patch);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_pixels = 1 << 20;
@@ -321,4 +321,4 @@ double ScreenSpaceBound::pixels(PatchSegments segments, double distance) const {
   return depth_ > 0 ? steepest_ * distance / (depth_ - distance) : 0;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

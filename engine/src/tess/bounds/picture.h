@@ -20,7 +20,7 @@
 #include "tessera/status.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A View whose numbers have been checked, with the camera's axes.
 class Camera {
@@ -81,4 +81,4 @@ class ScreenSpaceBound {
   double steepest_ = 0, depth_ = 0;  ///< for patches bounded by depth; the depth is 0 where nothing is seen
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the least float that is not below x >= 0.
 inline float rounded_up(double x) {
@@ -12,4 +12,4 @@ inline float rounded_up(double x) {
   return double(nearest) < x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) + 1) : nearest;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

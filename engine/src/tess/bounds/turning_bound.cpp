@@ -8,7 +8,7 @@
 #include "tess/bounds/normal_net.h"
 #include "tess/bounds/rounded_up.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Pieces of up to 2^-max_depth of each parameter are looked at; rectangles have 2^-rectangle_depth.
@@ -274,4 +274,4 @@ double TurningBound::angle(PatchSegments segments) const {
   return (1 + 0x1p-40) * most + (0x1p-24 * double(largest_) + 0x1p-21);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

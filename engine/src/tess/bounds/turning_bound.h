@@ -17,7 +17,7 @@
 #include "tess/cells/segments.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Bounds on |n_u| and |n_v| over a rectangle of the patch, in radians over its own parameters.
 struct Turning {
@@ -57,4 +57,4 @@ class TurningBound {
   bool is_finite_ = true;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
@@ -91,4 +91,4 @@ Vec3 F64Points::start_of(Side side) const {
   return patch_.point(end_u ? patch_.degree_u() : 0, end_v ? patch_.degree_v() : 0) - origin_ + Vec3{};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

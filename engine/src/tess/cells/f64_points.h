@@ -4,7 +4,7 @@
 #include "surface/net/homogeneous.h"
 #include "tess/cells/stitched_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the largest distance between a vertex of F64Points, rounded to float, and the surface's point at the exact
 /// parameters. Lengths are those of the model.
@@ -79,4 +79,4 @@ class F64Points {
   HomogeneousNet net_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The four borders of a patch, counter-clockwise around its parameters from (0,0): v = 0, u = 1, v = 1, u = 0.
 enum class Side : std::uint8_t { v0, u1, v1, u0 };
@@ -20,4 +20,4 @@ constexpr Edge edge_of(Side side) {
   return edges[static_cast<int>(side)];
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

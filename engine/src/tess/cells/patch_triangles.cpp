@@ -3,7 +3,7 @@
 #include "surface/net/collapsed_edges.h"
 #include "tess/cells/write_triangle.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Whether the patch is a curve or a point. If the points do not depend on one parameter but the weights do, weights
@@ -135,4 +135,4 @@ void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std:
     }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

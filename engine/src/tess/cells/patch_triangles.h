@@ -7,7 +7,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The properties of a patch that decide which triangles it has.
 struct PatchShape {
@@ -44,4 +44,4 @@ std::uint32_t* write_triangles(const PatchShape& shape, Rates rates, std::uint32
 void write_quads(const PatchShape& shape, Rates rates, std::uint32_t first, std::uint32_t* indices,
                  std::uint32_t* quads);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

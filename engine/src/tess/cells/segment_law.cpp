@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::int64_t ceil_of(std::int64_t numerator, std::int64_t denominator) {
@@ -81,4 +81,4 @@ Segments segments_for(const RateNeeds& needs, bool parts_halves) {
   return Segments::graded(static_cast<int>(in_halves), static_cast<int>(lower.count), grades);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

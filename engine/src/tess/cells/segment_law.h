@@ -5,7 +5,7 @@
 
 #include "tess/cells/segments.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The rates needed in the eighths of a parameter.
 using RateNeeds = std::array<Segments::Fraction, Segments::parts>;
@@ -17,4 +17,4 @@ using RateNeeds = std::array<Segments::Fraction, Segments::parts>;
 /// other way lead to reversed segments.
 Segments segments_for(const RateNeeds& needs, bool parts_halves);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 
 #include "tess/cells/patch_triangles.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The largest rate, also of halves: up to it, parameters i / rate are well apart in float.
 inline constexpr int max_rate = 4096;
@@ -178,4 +178,4 @@ struct PatchSegments {
   }
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 
 #include "tess/cells/write_triangle.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// A row of points: where segments k = first .. last begin, with vertices `vertex(k)`.
@@ -162,4 +162,4 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   return to;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tess/cells/patch_side.h"
 #include "tess/cells/segments.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// How a patch is divided. Vertices: first the inner points [iu - 1][iv - 1] where the segments of `inner` begin; then
 /// the ring, border points where segments begin, counter-clockwise from (0,0), each corner once.
@@ -113,4 +113,4 @@ struct Division {
 /// point where inner segment k begins has the code k - 1. `collapsed`: no triangle stands on the border.
 std::vector<std::uint32_t> strip_codes(Segments border, Segments inner, bool collapsed, std::uint32_t border_code);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

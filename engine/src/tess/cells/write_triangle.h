@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Writes the corners of a triangle. Returns where the next one goes.
 inline std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -12,4 +12,4 @@ inline std::uint32_t* write(std::uint32_t* to, std::uint32_t a, std::uint32_t b,
   return to + 3;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

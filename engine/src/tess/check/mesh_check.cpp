@@ -12,7 +12,7 @@
 #include "tessera/mesh.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The limit of an edge's 32 bits, which hold a vertex and a direction.
@@ -217,4 +217,4 @@ Result<MeshReport> check(const Mesh& mesh) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 double component(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
@@ -88,4 +88,4 @@ std::size_t count_t_junctions(std::span<const Vec3> vertices, std::span<const st
   return static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin());
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

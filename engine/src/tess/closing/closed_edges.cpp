@@ -11,7 +11,7 @@
 #include "tess/closing/edge_points.h"
 #include "tess/trimmed/patch_points.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns the first vertex of a division's ring at the place of this one: another one where it lies on collapsed
@@ -371,4 +371,4 @@ Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs,
   return Closer(set, runs, divisions, cuts, stops, chord, cancel).run(max_gap, same_share, is_joined);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 #include "tess/bounds/chord_bound.h"
 #include "tess/closing/patch_edit.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The vertices that faces share along edges.
 struct ClosedEdges {
@@ -48,4 +48,4 @@ Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs,
                                 std::span<const std::uint8_t> is_joined,
                                 FunctionRef<ChordBound(std::uint32_t patch)> chord, const std::atomic<bool>* cancel);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

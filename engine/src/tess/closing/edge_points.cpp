@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The points of one edge after the other.
@@ -139,4 +139,4 @@ Result<EdgePoints> edge_points(const EdgeRuns& runs, EdgeSegments& segments, dou
   return Maker(runs, segments, same_share, is_joined).run(cancel);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

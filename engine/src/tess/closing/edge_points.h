@@ -9,7 +9,7 @@
 #include "tess/closing/edge_segments.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The vertices at one parameter of an edge.
 struct EdgePoint {
@@ -43,4 +43,4 @@ struct EdgePoints {
 Result<EdgePoints> edge_points(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
                                std::span<const std::uint8_t> is_joined, const std::atomic<bool>* cancel);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tess/trimmed/patch_sides.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns where a piece has a value of u, or v, from 0 to 1.
@@ -257,4 +257,4 @@ void EdgeRuns::sort() {
   std::ranges::sort(by_face_, {}, [&](std::uint32_t k) { return std::pair(runs_[k].face, runs_[k].first); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 #include "tess/cells/patch_side.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 struct FaceSides;
 
@@ -46,7 +46,7 @@ struct CurveAlongEdge {
 inline constexpr double least_same_share = 1e-9, largest_same_share = 1e-5;
 
 /// All runs of a set, edge by edge. They depend on the set's loops alone.
-class [[gnu::visibility("hidden")]] EdgeRuns {
+class EdgeRuns {
  public:
   /// The set must have edges, and must outlive the runs.
   TESSERA_INTERNAL_EXPORT explicit EdgeRuns(const PatchSet::Impl& set);
@@ -86,7 +86,7 @@ class [[gnu::visibility("hidden")]] EdgeRuns {
   void add_face(const PatchSet::Impl& set, std::uint32_t face);
   /// Finds the patch and the side of a run along a line between patches. `sides`: those of the face, once they are
   /// known.
-  void find_side(EdgeRun & run, bool along_u, std::optional<FaceSides>& sides) const;
+  void find_side(EdgeRun& run, bool along_u, std::optional<FaceSides>& sides) const;
   void sort();
 
   const PatchEdges* edges_;
@@ -110,4 +110,4 @@ double parameter_at(std::span<const TrimPiece> pieces, bool along_u, double valu
 /// Returns the point of pieces that follow each other at a parameter of the caller's curve, within the piece's box.
 ParameterPoint point_at(std::span<const TrimPiece> pieces, double t);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

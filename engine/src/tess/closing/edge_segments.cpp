@@ -8,7 +8,7 @@
 #include "base/impl_access.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
                            std::span<const CutPatch> cuts, const EdgeStops* stops)
@@ -215,4 +215,4 @@ void EdgeSegments::join_corner(const PatchEdges::Face& face, const ParameterPoin
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tess/closing/side_vertices.h"
 #include "tess/trimmed/cut_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A vertex that a patch needs inside a segment of its boundary.
 struct InsertedVertex {
@@ -45,7 +45,7 @@ struct EdgeSegment {
 };
 
 /// The segments of all edges of a set, and the vertices that they need at the ends of edges.
-class [[gnu::visibility("hidden")]] EdgeSegments {
+class EdgeSegments {
  public:
   /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut; `stops`: for these
   /// divisions, or null. All must outlive this object.
@@ -53,9 +53,9 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
                std::span<const CutPatch> cuts, const EdgeStops* stops);
 
   /// Appends the segments of an edge: use by use, by growing parameters of the edge.
-  void append(std::size_t edge, std::vector<EdgeSegment> & segments);
+  void append(std::size_t edge, std::vector<EdgeSegment>& segments);
   /// Appends the segments of lines that close gaps between curves, after those of all edges. They have no parameters.
-  void append_gaps(std::vector<EdgeSegment> & segments);
+  void append_gaps(std::vector<EdgeSegment>& segments);
   /// Vertices that are one, in pairs: corners of a face's patches, ends of chords on lines between them, and the points of a side that is one point.
   std::span<const std::array<PatchVertex, 2>> same() const { return same_; }
   std::span<const InsertedVertex> inserted() const { return inserted_; }
@@ -94,4 +94,4 @@ class [[gnu::visibility("hidden")]] EdgeSegments {
   std::unordered_multimap<std::uint64_t, std::uint32_t> on_sides_;  ///< vertices inserted where runs end on sides
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

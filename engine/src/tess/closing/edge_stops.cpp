@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Sorts parameters, and keeps the first of those that count as one.
@@ -178,4 +178,4 @@ ChordStops EdgeStops::list(std::uint32_t face, std::span<const TrimPiece> pieces
   return {list, same_share_ * (range.to - range.from)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

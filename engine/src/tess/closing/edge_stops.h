@@ -11,12 +11,12 @@
 #include "tess/closing/edge_runs.h"
 #include "tess/trimmed/trimmed_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Common parameters of the faces along each edge: where its runs end, where sides of whole patches have vertices, and
 /// where chords and sides of cut patches must be divided for any of the faces. So the faces' triangles need few more
 /// vertices to meet.
-class [[gnu::visibility("hidden")]] EdgeStops {
+class EdgeStops {
  public:
   /// Parameters within `same_share` of an edge's range count as one.
   EdgeStops(const EdgeRuns& runs, double same_share)
@@ -35,18 +35,18 @@ class [[gnu::visibility("hidden")]] EdgeStops {
             FunctionRef<std::optional<Segments>(std::uint32_t patch, Side side)> segments,
             FunctionRef<const ChordLimits&(std::uint32_t patch)> limits, Workspace& workspace);
   /// Takes the stops of an edge that were found before, for the same limits and segments. Threads: as for find().
-  void keep(EdgeStops & before, std::size_t edge);
+  void keep(EdgeStops& before, std::size_t edge);
   /// Whether the stops of an edge are the same as before.
   bool has_same(const EdgeStops& before, std::size_t edge) const { return stops_[edge] == before.stops_[edge]; }
   /// Replaces the points of a cut patch's side along edges by the stops there, where no other patch has them.
-  void put_on_side(std::uint32_t patch, Side side, std::vector<SidePoint> & points) const;
+  void put_on_side(std::uint32_t patch, Side side, std::vector<SidePoint>& points) const;
   /// The chords of a run of `count` pieces, which end at all stops; null if there is none.
   const LaidChords* laid(std::uint32_t face, std::uint32_t first, std::size_t count) const;
   /// The parameters of the loop's curve where a whole patch's side has vertices within a run, along the side, without
   /// the run's ends; empty if they are not known.
   std::span<const double> at_vertices(const EdgeRun& run) const { return chords_[runs_->index(run)].parameters; }
   /// Lists the stops of pieces of one curve into `list`, whose values the result refers to.
-  ChordStops list(std::uint32_t face, std::span<const TrimPiece> pieces, std::vector<double> & list) const;
+  ChordStops list(std::uint32_t face, std::span<const TrimPiece> pieces, std::vector<double>& list) const;
 
  private:
   /// Adds the places of a whole patch's vertices along the side of a run, without its ends.
@@ -69,7 +69,7 @@ class [[gnu::visibility("hidden")]] EdgeStops {
 };
 
 /// The demands of edges on one cut patch of a face.
-class [[gnu::visibility("hidden")]] PatchStops final : public EdgeDemands {
+class PatchStops final : public EdgeDemands {
  public:
   PatchStops(const EdgeStops& stops, std::uint32_t patch, std::uint32_t face)
       : stops_(stops), patch_(patch), face_(face) {}
@@ -77,7 +77,7 @@ class [[gnu::visibility("hidden")]] PatchStops final : public EdgeDemands {
     return stops_.laid(face_, first, count);
   }
   ChordStops stops(std::span<const TrimPiece> chain) const override { return stops_.list(face_, chain, list_); }
-  void put_on_side(Side side, std::vector<SidePoint> & points) const override {
+  void put_on_side(Side side, std::vector<SidePoint>& points) const override {
     stops_.put_on_side(patch_, side, points);
   }
 
@@ -87,4 +87,4 @@ class [[gnu::visibility("hidden")]] PatchStops final : public EdgeDemands {
   mutable std::vector<double> list_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Triangle = CutPatch::Triangle;
@@ -81,4 +81,4 @@ std::vector<std::uint32_t> insert_vertices(std::span<const InsertedVertex> inser
   return changed;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

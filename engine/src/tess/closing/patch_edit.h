@@ -10,7 +10,7 @@
 #include "base/function_ref.h"
 #include "tess/closing/edge_segments.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The vertices and triangles that a whole patch has besides those of its division.
 struct PatchEdit {
@@ -37,4 +37,4 @@ std::vector<std::uint32_t> insert_vertices(std::span<const InsertedVertex> inser
                                            FunctionRef<std::uint32_t(std::uint32_t)> pole,
                                            std::vector<CutPatch::Triangle>& triangles);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

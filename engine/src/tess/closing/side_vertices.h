@@ -11,7 +11,7 @@
 #include "tess/trimmed/cut_patch.h"
 #include "tess/trimmed/patch_sides.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The vertices of a side by growing places along it. The patch's division or cut must outlive this object.
 class SideVertices {
@@ -75,4 +75,4 @@ class SideVertices {
   std::size_t size_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 
 #include "tess/edges/side_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 EdgeDirections::EdgeDirections(const PatchSet::Impl& set, const SharedEdges& edges, const VertexCopies& weld,
                                std::span<const PatchShape> whole, std::span<const PatchShape> all)
@@ -54,4 +54,4 @@ bool EdgeDirections::hold() const {
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The directions of all borders along their edges, as they were when the edges were found: needs the set at that
 /// revision. Borders are numbered 4 * patch + side.
@@ -16,7 +16,7 @@ namespace tessera::inline abi_0_1 {
 /// The leading border of an edge gives its direction: the first border that takes no vertices from another, of the
 /// whole patches if there are any, else of the others. Two borders of one edge are the same bits, or welding lists one
 /// of them with its direction; a border that loops cut is the same bits as the leading one, or as a welded one.
-class [[gnu::visibility("hidden")]] EdgeDirections {
+class EdgeDirections {
  public:
   static constexpr std::uint32_t none = SharedEdges::none;
 
@@ -46,4 +46,4 @@ class [[gnu::visibility("hidden")]] EdgeDirections {
   std::vector<std::uint32_t> next_welded_;   ///< `[place among the welded borders]`: another of that edge, or none
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tess/cells/segments.h"
 #include "tess/edges/shared_edges.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(side) ? patch.u : patch.v; }
 
@@ -80,4 +80,4 @@ class PieceNeeds {
   Segments leading_;  ///< segments that have all of these rates, if a patch has such; otherwise none
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

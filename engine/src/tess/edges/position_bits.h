@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 using PositionBits = std::array<std::uint32_t, 3>;
 using DoublePositionBits = std::array<std::uint64_t, 3>;
@@ -35,4 +35,4 @@ inline std::size_t hash(const DoublePositionBits& bits) {
   return hash(PositionBits{folded(bits[0]), folded(bits[1]), folded(bits[2])});
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -5,7 +5,7 @@
 #include "tess/cells/stitched_patch.h"
 #include "tess/edges/edge_needs.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int rounds = 4;
@@ -149,4 +149,4 @@ Result<std::vector<std::uint8_t>> choose_together(std::span<const PatchShape> sh
   return Chooser(shapes, edges, against, choices, cancel).choose();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

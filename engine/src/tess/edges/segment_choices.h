@@ -13,7 +13,7 @@
 #include "tess/edges/shared_edges.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Segments, and the distance that a patch keeps with them.
 struct ProvenSegments {
@@ -67,4 +67,4 @@ Result<std::vector<std::uint8_t>> choose_together(std::span<const PatchShape> sh
                                                   std::span<const SegmentChoices> choices,
                                                   const std::atomic<bool>* cancel = nullptr);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// equal() for borders of `count` points each, of three or four components.
@@ -216,4 +216,4 @@ void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
     if (edge != none) edge = numbers[edge];
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

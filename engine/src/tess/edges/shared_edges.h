@@ -11,7 +11,7 @@
 #include "block/patch_set_impl.h"
 #include "tess/cells/patch_side.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Where the control points of a side lie in a block, counted in floats.
 struct BorderPlaces {
@@ -106,4 +106,4 @@ class SharedEdges {
   std::size_t count_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

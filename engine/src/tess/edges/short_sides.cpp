@@ -8,7 +8,7 @@
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/side_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using Lanes = std::array<float, PatchSet::lanes>;
@@ -64,4 +64,4 @@ bool is_needle(const BezierPatch& patch, Side side, double reach) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

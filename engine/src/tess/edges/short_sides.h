@@ -6,7 +6,7 @@
 #include "block/patch_set_impl.h"
 #include "tess/cells/patch_side.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed
 /// corners' difference.
@@ -17,4 +17,4 @@ bool is_thin(const BezierPatch& patch, Side side, double reach);
 /// Whether all control points of a patch lie within `reach` of the straight line from one end of a side to the other.
 bool is_needle(const BezierPatch& patch, Side side, double reach);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

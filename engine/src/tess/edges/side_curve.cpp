@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 SideCurve::SideCurve(const BezierPatch& patch, Side side) {
   const bool along_u = runs_along_u(side);
@@ -145,4 +145,4 @@ Result<BezierPatch> with_pole(const BezierPatch& patch, Side side) {
   return patch.with_points(points);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "tess/edges/shared_edges.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A unit vector that models hardly align with: points near each other along it are few beside those that lie so along
 /// x, y or z.
@@ -57,4 +57,4 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
 /// Returns the patch with one border made a point, the border's first. Errors: out_of_memory.
 Result<BezierPatch> with_pole(const BezierPatch& patch, Side side);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

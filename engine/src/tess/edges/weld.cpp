@@ -13,7 +13,7 @@
 #include "tess/edges/short_sides.h"
 #include "tess/edges/side_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Side side_of(std::uint32_t border) { return all_sides[border % 4]; }
@@ -393,4 +393,4 @@ void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "tess/cells/patch_triangles.h"
 #include "tess/edges/shared_edges.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Vertices of the rings of borders that are copies of others. Borders and corners are numbered 4 * patch + side; a
 /// corner is the one at which its side starts in the ring. No vertex is both copied from and copied to.
@@ -89,4 +89,4 @@ void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies
                            FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements,
                            bool same_bits_stay = false);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Whether the patches from `first` on are those of the spline, in the order of its grid.
@@ -94,4 +94,4 @@ Status EditedSurfaces::finish(const PatchSet& set, std::span<const SurfaceEdits>
   return {status.code(), status.message(), found - edits.begin()};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

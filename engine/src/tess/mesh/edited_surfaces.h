@@ -7,7 +7,7 @@
 #include "convert/spline/edited_spline.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Holds the memory for conversions, so that repeated ones allocate nothing.
 class EditedSurfaces {
@@ -37,4 +37,4 @@ class EditedSurfaces {
   std::vector<Vec3> points_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -15,7 +15,7 @@
 #include "tess/write/vertex_pass.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double update_ends[] = {0.5, 1};  // after the proof, and after the vertices
@@ -212,4 +212,4 @@ Status ProvenMesh::write_touched(const PatchSet::Impl& set, const MeshViews& out
   return write_copies(set, out, {}, [&](std::size_t patch) { return update_->is_touched(set, patch); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

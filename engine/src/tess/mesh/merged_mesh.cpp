@@ -11,7 +11,7 @@
 #include "tess/write/vertex_views.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Numbers the distinct vertices, by a hash table with open addressing of the first vertex at each place.
@@ -160,4 +160,4 @@ Result<MeshChange> MergedMesh::update(PatchSet& set, const PatchEdits& edits, co
   return change;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

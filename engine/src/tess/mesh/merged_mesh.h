@@ -6,7 +6,7 @@
 #include "tess/mesh/proven_mesh.h"
 #include "tess/mesh/tessellation_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A mesh whose vertices at one place are one. With normals, those of one normal.
 ///
@@ -45,4 +45,4 @@ class MergedMesh final : public Tessellation::Impl {
   std::vector<std::uint32_t> sources_;  ///< by vertex of the merged mesh: the first of a patch
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Makes triangles of all faces, part by part.
@@ -83,4 +83,4 @@ Result<Mesh> split_quads(const Mesh& mesh) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

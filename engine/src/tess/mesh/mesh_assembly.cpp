@@ -10,7 +10,7 @@
 #include "tess/mesh/mesh_parts.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status in_instance(std::size_t k, const std::string& name, StatusCode code, const std::string& sentence) {
@@ -190,4 +190,4 @@ Result<Mesh> flatten(const MeshAssembly& assembly) {
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "tessera/status.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status no_such(const char* what, std::size_t index, std::size_t count, const char* face, std::size_t place) {
@@ -147,4 +147,4 @@ Result<std::vector<MeshPart>> parts_by_face(const Mesh& mesh, const PatchSet& se
   });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

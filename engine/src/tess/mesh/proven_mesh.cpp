@@ -20,7 +20,7 @@
 #include "tess/write/welded_vertices.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t vertices_per_task = std::size_t{1} << 15;
@@ -235,4 +235,4 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   return plan_.closed() ? write_closed(impl_of(set), plan_, options_.crease_angle, out, execution) : Status();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

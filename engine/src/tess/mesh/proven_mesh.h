@@ -10,7 +10,7 @@
 #include "tess/plan/plan_update.h"
 #include "tess/write/mesh_tables.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Checks the options, except rates, and turns them into those of a planner. Errors: invalid_argument.
 Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set);
@@ -19,7 +19,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
 Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set);
 
 /// A plan from tolerances.
-class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl {
+class ProvenMesh final : public Tessellation::Impl {
  public:
   /// Checks the options and plans. `before`: the plan that is replaced, or null; its patches keep their segments where
   /// possible, and its tolerance. Errors: as Tessellation::make().
@@ -39,8 +39,8 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   }
   Mesh allocate() const override;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
-  Result<MeshChange> update(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution)
-      override;
+  Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
+                            const Execution& execution) override;
 
  private:
   ProvenMesh(const PatchSet& set, const TessellationOptions& options, double tolerance, CertifiedPlan plan,
@@ -60,11 +60,11 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
 
   PlanOfSet of(const PatchSet::Impl& set) const { return {set, plan_, weld_, joins_, tolerance_, options_.spare}; }
   /// Checks an update; after an error the set's values and the views are as they were.
-  Status start(PatchSet & set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
+  Status start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
   /// Makes the memory for proofs of a set.
   Status start_proofs(const PatchSet& set, const Execution& execution);
   /// update() of a set with trims, or with edges of shapes.
-  Result<MeshChange> update_anew(PatchSet & set, const PatchEdits& edits, const MeshViews& out,
+  Result<MeshChange> update_anew(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                  const Execution& execution);
   /// run() into views that need not have triangles.
   Status write_again(const PatchSet& set, const MeshViews& out, const Execution& execution) const;
@@ -73,7 +73,7 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   /// Replaces the plan by one from the edited patches, or from all, and returns how many patches changed.
   Result<std::size_t> redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution);
   /// Takes the plan of another object, which is then empty. Returns how many patches changed.
-  std::size_t replace(ProvenMesh & next);
+  std::size_t replace(ProvenMesh& next);
   /// Writes the vertices of edited patches.
   Status write_touched(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution) const;
   std::size_t changed_patches(const ProvenMesh& other) const;
@@ -95,4 +95,4 @@ class [[gnu::visibility("hidden")]] ProvenMesh final : public Tessellation::Impl
   std::unique_ptr<TouchedBlocks> edits_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tess/mesh/tessellation_impl.h"
 #include "tessera/guard.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The largest value that is finite.
@@ -93,4 +93,4 @@ Result<MeshChange> Tessellation::update(PatchSet& set, std::span<const SurfaceEd
   return guarded([&] { return impl_->update_surfaces(set, edits, out, execution); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

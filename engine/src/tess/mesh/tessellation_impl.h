@@ -6,7 +6,7 @@
 
 #include "tessera/tessellation.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 class EditedSurfaces;
 
@@ -48,4 +48,4 @@ Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& se
 Result<std::unique_ptr<Tessellation::Impl>> make_proven_mesh(const PatchSet& set, const TessellationOptions& options,
                                                              const Execution& execution);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

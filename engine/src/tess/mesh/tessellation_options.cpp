@@ -11,7 +11,7 @@
 #include "tess/mesh/proven_mesh.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double max_weld = 0.05;  // a share of the model's size
@@ -94,4 +94,4 @@ Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& 
   return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

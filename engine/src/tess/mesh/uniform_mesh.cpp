@@ -20,7 +20,7 @@
 #include "tess/write/mesh_views.h"
 #include "tessera/status.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double progress_ends[] = {0.7, 1};  // after the vertices, and after all else
@@ -221,4 +221,4 @@ Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& se
   return std::unique_ptr<Tessellation::Impl>(std::make_unique<UniformMesh>(set, *std::move(grid), options.quads));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

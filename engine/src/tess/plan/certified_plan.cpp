@@ -15,7 +15,7 @@
 #include "tess/cells/f64_points.h"
 #include "tess/edges/side_curve.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double no_angle = std::numeric_limits<double>::infinity();
@@ -397,4 +397,4 @@ Result<CertifiedPlan> CertifiedPlanner::plan(double tolerance, std::uint64_t max
                                                   " and " + std::to_string(max_vertices));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -26,7 +26,7 @@
 #include "tess/trimmed/cut_patch.h"
 #include "tessera/tessellation.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  ///< the limit of 32-bit indices
 
@@ -170,7 +170,7 @@ struct KeptSegments {
 };
 
 /// All that is found for a set before its tolerance is known: shapes, edges, welds and bounds.
-class [[gnu::visibility("hidden")]] CertifiedPlanner {
+class CertifiedPlanner {
  public:
   /// Makes a planner. The set must outlive it. Errors: cancelled, out_of_memory.
   static Result<CertifiedPlanner> make(const PatchSet::Impl& set, const PlannerOptions& options,
@@ -249,7 +249,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// Returns the rounding of a patch's vertices before welding, once its block is bounded.
   double own_rounding(const BlockGroup& group, PatchSet::Slot slot) const;
   /// Adds the whole patches that give vertices to cut ones that need doubles.
-  void add_givers_of_cut(std::vector<std::uint8_t> & patches) const;
+  void add_givers_of_cut(std::vector<std::uint8_t>& patches) const;
   void find_edges_in_step();
   /// The share of an edge's range within which parameters count as one.
   double same_share(const Request& request) const;
@@ -298,7 +298,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   bool is_displaced(std::size_t patch) const { return !weld_.displacements.empty() && weld_.displacements[patch] > 0; }
   void divide(double tolerance, CertifiedPlan& plan) const;
   /// Gives triangles to patches without any, unless those of a neighbour show what is left of them.
-  void keep_from_vanishing(CertifiedPlan & plan) const;
+  void keep_from_vanishing(CertifiedPlan& plan) const;
   /// Whether welding made a patch a point, and a neighbour has triangles there.
   bool is_welded_spot(std::size_t patch, const CertifiedPlan& plan) const;
   /// The room for the triangles of a cut patch, and for the slivers along its loops.
@@ -328,8 +328,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// `share`: the part of the tolerance that the patch may take.
   CutRoom room_of(const CutPatch& cut, double share, const Request& request, const CertifiedPlan& plan) const;
   /// Returns the rooms of all cut patches, as patches are divided now. Errors: cancelled.
-  Result<std::vector<CutRoom>> find_rooms(const Request& request, const CertifiedPlan& plan, const Execution& execution)
-      const;
+  Result<std::vector<CutRoom>> find_rooms(const Request& request, const CertifiedPlan& plan,
+                                          const Execution& execution) const;
   /// Chooses the segments of the cut patches that are to be cut anew, for their shares of the room.
   void choose_cut(const Request& request, CutShares& shares, CertifiedPlan& plan) const;
   /// The facts that all patches of one pass are cut by. `is_shared`: by edge, whether two borders or more have it.
@@ -344,8 +344,8 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   double cut_patch(std::size_t c, const CutPass& pass, CutPatchMaker& maker, CertifiedPlan& plan) const;
   /// Chooses the segments of cut patches, divides all patches and cuts those that are due or changed, until every bound
   /// holds or no attempt helps. Errors: invalid_argument (more triangles than the limit), cancelled.
-  Status divide_and_cut(const Request& request, CertifiedPlan& plan, Cutting& cutting, const Execution& execution)
-      const;
+  Status divide_and_cut(const Request& request, CertifiedPlan& plan, Cutting& cutting,
+                        const Execution& execution) const;
   /// Makes one attempt of it.
   Status cut_once(const Request& request, std::span<const std::uint8_t> is_shared, CertifiedPlan& plan,
                   Cutting& cutting, const Execution& execution) const;
@@ -356,7 +356,7 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   /// The error of a tolerance for which a cut patch takes more triangles than the limit.
   Status too_many(const Request& request, std::size_t patch) const;
   /// Finds the borders of whole patches along the sides of cut ones.
-  void find_same_borders(CertifiedPlan & plan) const;
+  void find_same_borders(CertifiedPlan& plan) const;
   /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along
   /// it has a bound of halves.
   double straddling_distance(std::size_t patch, Side side, const CertifiedPlan& plan) const;
@@ -385,4 +385,4 @@ class [[gnu::visibility("hidden")]] CertifiedPlanner {
   std::vector<ScreenSpaceBound> pictures_;  ///< `[patch]`, if there is a camera
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "parallel/parallel_for.h"
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t edges_per_task = 16;
@@ -128,4 +128,4 @@ std::vector<std::uint8_t> CertifiedPlanner::joined_borders(const CertifiedPlan& 
   return is_joined;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double least_gain = 0.95;        // of the excess
@@ -41,4 +41,4 @@ void CutShares::take(std::size_t patch, double excess) {
   of.since_best *= step;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Finds for each cut patch the share of its room that its cells may take, so that the patch as it is cut keeps its
 /// limits.
@@ -44,4 +44,4 @@ class CutShares {
   std::vector<Patch> patches_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

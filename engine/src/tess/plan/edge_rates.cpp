@@ -10,7 +10,7 @@
 #include "tess/edges/short_sides.h"
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// At higher rates of a patch, an odd border rate instead of the next even one saves too little to look for.
@@ -233,4 +233,4 @@ void CertifiedPlanner::keep_from_vanishing(CertifiedPlan& plan) const {
   plan.set_line_patches(std::move(lines));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include "tess/edges/side_curve.h"
 #include "tess/plan/ring_vertices.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::uint32_t none = SharedEdges::none;
@@ -121,4 +121,4 @@ VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, co
   return Joiner(set, plan, edges, weld, normals, angle).take();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include "tess/plan/certified_plan.h"
 #include "tessera/strided_view.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Joins each border to the first border of its edge, with the corners at their ends, and each border that is a point.
 /// `normals`: the normals of the plan's mesh before vertices are shared. A border is joined only if no two normals
@@ -12,4 +12,4 @@ namespace tessera::inline abi_0_1 {
 VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges,
                         const VertexCopies& weld, const View3<float>* normals, double angle);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void CertifiedPlan::set_f64_patches(std::span<const std::uint8_t> patches) {
   if (patches.empty()) return;
@@ -133,4 +133,4 @@ std::size_t CertifiedPlan::ring_vertex(std::uint32_t border, int k) const {
   return start(source.from) + before + static_cast<std::size_t>((opposite ? rate - k : k) - 1);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 Status invalid(std::string message, std::size_t patch) {
@@ -165,4 +165,4 @@ std::string CertifiedPlanner::wanted(double tolerance) const {
   return said;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

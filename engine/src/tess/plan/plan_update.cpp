@@ -7,7 +7,7 @@
 #include "parallel/parallel_for.h"
 #include "tess/bounds/task_size.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 void PlanUpdate::Lanes::add(PatchSet::Slot slot) {
   if (bits[slot.block] == 0) blocks.push_back(slot.block);
   bits[slot.block] |= 1u << slot.lane;
@@ -221,4 +221,4 @@ CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
   return plan;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

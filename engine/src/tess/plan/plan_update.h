@@ -9,10 +9,10 @@
 #include "base/function_ref.h"
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A plan and the set that it is proven for.
-struct [[gnu::visibility("hidden")]] PlanOfSet {
+struct PlanOfSet {
   const PatchSet::Impl& set;
   const CertifiedPlan& plan;
   const VertexCopies& weld;   ///< vertices with a common position
@@ -23,7 +23,7 @@ struct [[gnu::visibility("hidden")]] PlanOfSet {
 
 /// The bounds of all patches of a set, kept for edits. Holds memory for all patches, so that repeated proofs of
 /// distances allocate nothing. Edges and welds are those of the planner.
-class [[gnu::visibility("hidden")]] PlanUpdate {
+class PlanUpdate {
  public:
   PlanUpdate(CertifiedPlanner planner, const PlanOfSet& of);
 
@@ -45,7 +45,7 @@ class [[gnu::visibility("hidden")]] PlanUpdate {
   /// block; called from any thread, once for each block of touched patches. Errors: cancelled.
   Result<Outcome> prove(const PlanOfSet& of, FunctionRef<void(std::uint32_t block)> pack, const Execution& execution);
   /// After `kept`: sets the new bounds.
-  void take_bounds(CertifiedPlan & plan) const;
+  void take_bounds(CertifiedPlan& plan) const;
   /// After `redivided`: returns the plan with the new segments. Vertices are not shared yet.
   CertifiedPlan redivided(const PlanOfSet& of) const;
 
@@ -89,4 +89,4 @@ class [[gnu::visibility("hidden")]] PlanUpdate {
   std::atomic<bool> is_redivided_ = false, is_unknown_ = false;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

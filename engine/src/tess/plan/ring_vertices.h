@@ -3,7 +3,7 @@
 
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The vertices of a border's points k = 0 .. rate in the direction of the ring, with both corners.
 class RingVertices {
@@ -25,4 +25,4 @@ class RingVertices {
   std::size_t start_, second_, end_, step_;  ///< the step modulo 2^64
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

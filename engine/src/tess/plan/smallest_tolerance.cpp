@@ -8,7 +8,7 @@
 
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double steps_per_octave = 128;  // tolerances 0.54 percent apart
@@ -80,4 +80,4 @@ Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles,
   return std::min(tolerance_of(best), high);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -22,7 +22,7 @@
 #include "tess/edges/side_curve.h"
 #include "tess/plan/certified_plan.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 // Triangles of the band may be wider than a cell, so cells take a part of the room. Larger ones are halved.
@@ -254,4 +254,4 @@ Status CertifiedPlanner::check_triangles(const Request& request, const Certified
                                             " triangles, the limit is " + std::to_string(request.max_triangles)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

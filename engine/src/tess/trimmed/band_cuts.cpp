@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Whether two segments cross within both.
@@ -134,4 +134,4 @@ bool BandCuts::is_blocked(const ParameterPoint& a, const ParameterPoint& b, std:
   return marks_->of_cells().any(cell, blocks) || cuts_of_cells_.any(cell, blocks);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 
 #include "tess/trimmed/chord_marks.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The use of a cell.
 enum class CellUse : std::uint8_t {
@@ -61,4 +61,4 @@ class BandCuts {
   std::vector<Crossing> crossings_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

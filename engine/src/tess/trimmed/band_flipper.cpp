@@ -5,7 +5,7 @@
 
 #include "basis/exact_sign.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double max_tilt = 0.134;    // of triangles that are left as they are: 30 degrees
@@ -75,4 +75,4 @@ void BandFlipper::run(
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

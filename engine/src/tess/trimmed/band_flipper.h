@@ -10,7 +10,7 @@
 #include "tess/trimmed/patch_points.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Flips edges between pairs of triangles where one of them is turned far from its surface: needles along loops, whose
 /// corners lie on one curve. Distances do not show these.
@@ -50,4 +50,4 @@ class BandFlipper {
   BandMesh mesh_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <tuple>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void BandMesh::link(std::vector<Triangle>& triangles, std::size_t first) {
   triangles_ = &triangles;
@@ -75,4 +75,4 @@ bool BandMesh::flip(Edge edge) {
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Links triangles that share an edge, and divides them. An object serves one thread at a time.
 class BandMesh {
@@ -54,4 +54,4 @@ class BandMesh {
   std::vector<std::pair<std::uint64_t, Edge>> by_ends_;  ///< a table of link(): edges by their ends, the smaller first
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,6 +1,6 @@
 #include "tess/trimmed/band_refiner.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 BandRefiner::LongestEdge BandRefiner::longest_edge(std::uint32_t triangle, const Demands& demands) const {
   LongestEdge longest{{triangle, 0}, -1};
@@ -77,4 +77,4 @@ bool BandRefiner::run(std::vector<ParameterPoint>& vertices, std::vector<Triangl
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

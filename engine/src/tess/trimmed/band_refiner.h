@@ -10,7 +10,7 @@
 #include "tess/trimmed/band_mesh.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Divides large triangles by the middle of their longest edge, together with the neighbour there (Rivara 1984,
 /// Algorithms for refining triangular grids). An object serves one thread at a time.
@@ -59,4 +59,4 @@ class BandRefiner {
   std::vector<std::uint8_t> odd_divisions_;  ///< by triangle from the first on
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

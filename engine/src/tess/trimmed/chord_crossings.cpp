@@ -7,7 +7,7 @@
 
 #include "basis/exact_sign.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 struct Segment {
@@ -88,4 +88,4 @@ bool ChordCrossings::divide_once(std::vector<ParameterPoint>& points, std::vecto
   return true;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

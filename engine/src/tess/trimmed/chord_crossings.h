@@ -6,7 +6,7 @@
 
 #include "tess/trimmed/polygon_triangles.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Finds and divides crossing chords. An object serves one thread at a time.
 class ChordCrossings {
@@ -32,4 +32,4 @@ class ChordCrossings {
   std::vector<std::uint32_t> next_marks_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Sets one over the smaller cell beside each line.
@@ -160,4 +160,4 @@ void ChordMarks::cross_v(const PlaneSegment& chord, bool is_side) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

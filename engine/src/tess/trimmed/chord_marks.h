@@ -8,7 +8,7 @@
 #include "tess/trimmed/grid_lines.h"
 #include "tess/trimmed/polygon_triangles.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Lists of numbers, one list a key, that grow by one number at a time.
 class NumberLists {
@@ -128,4 +128,4 @@ void ChordMarks::for_cells(const ParameterPoint& p, GridPlace of_p, const Parame
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 bool CutCells::run(const GridLines& grid, std::span<const ParameterPoint> points,
                    std::span<const PlaneSegment> chords) {
@@ -76,4 +76,4 @@ void CutCells::add_borders() {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

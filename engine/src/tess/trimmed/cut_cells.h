@@ -10,7 +10,7 @@
 #include "tess/trimmed/grid_lines.h"
 #include "tess/trimmed/polygon_triangles.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The triangles of the part of a grid that chords bound.
 ///
@@ -75,4 +75,4 @@ class CutCells {
   std::vector<ParameterPoint> sweep_points_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tess/trimmed/divided_chords.h"
 #include "trim/trim_region_impl.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The piece of ChordBound::pieces() in which a box of parameters lies.
@@ -382,4 +382,4 @@ void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders,
   std::ranges::sort(out.side_vertices, {}, [](const CutPatch::SideVertex& v) { return std::pair(v.side, v.along); });
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

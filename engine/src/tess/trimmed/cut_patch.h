@@ -13,7 +13,7 @@
 #include "tess/trimmed/band_refiner.h"
 #include "tess/trimmed/trimmed_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The triangles of a cut patch.
 struct CutPatch {
@@ -148,4 +148,4 @@ class CutPatchMaker {
   VertexMerger merger_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "basis/exact_sign.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 class Divider {
@@ -77,4 +77,4 @@ std::vector<CutPatch::LoopSegment> divided_chords(const PatchCutter& cutter, std
   return divider.take();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

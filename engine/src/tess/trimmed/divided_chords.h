@@ -7,7 +7,7 @@
 
 #include "tess/trimmed/cut_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Lists the edges of single triangles along the chords of loops. A chord on which other points lie becomes several; of
 /// a part that two chords share nothing is left, since both of its sides are inside or outside.
@@ -18,4 +18,4 @@ namespace tessera::inline abi_0_1 {
 std::vector<CutPatch::LoopSegment> divided_chords(const PatchCutter& cutter, std::span<const std::uint32_t> numbers,
                                                   std::span<const CutPatch::Triangle> triangles);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -1,6 +1,6 @@
 #include "tess/trimmed/funnel.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 // The latest point of the gap sees the new one. On both sides of the line between them lies one funnel: that of the
 // gap, and a new one with these two points.
@@ -19,4 +19,4 @@ Gap Funnels::split(const SweepPoints& points, Gap& gap, std::uint32_t rank) {
   return above;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

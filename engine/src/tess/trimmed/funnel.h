@@ -11,7 +11,7 @@
 #include "basis/exact_sign.h"
 #include "tess/trimmed/sweep_points.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::uint32_t no_place = 0xFFFFFFFF;
 
@@ -109,4 +109,4 @@ inline void Funnels::add(const SweepPoints& points, Funnel& funnel, std::uint32_
   funnel = {push(rank, top), bank};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

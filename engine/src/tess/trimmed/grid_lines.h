@@ -8,7 +8,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A place in a grid: of a cell, or of a vertex.
 struct GridPlace {
@@ -53,4 +53,4 @@ class GridLines {
   std::span<const double> u_, v_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include "basis/bernstein.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void PatchPoints::begin_row(double u) {
   row_u_ = u;
@@ -62,4 +62,4 @@ Vec3 PatchPoints::normal(const ParameterPoint& local) {
   return unit_normal(patch_, local.u, local.v).direction;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "surface/net/homogeneous.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Evaluates a patch at parameters in [0,1]^2. On a side only the side's control points count, because Bernstein values
 /// at 0 and 1 are exact; so neighbours with the same control points get the same bits. Corners are control points.
@@ -35,4 +35,4 @@ class PatchPoints {
   Row row_, row_du_;  ///< control points of the line u = const, their u-derivatives
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void PatchSides::set(std::span<const TrimPiece> pieces, double ParameterPoint::*across, std::span<const double> lines,
                      std::span<const double> along, bool starts_inside) {
@@ -49,4 +49,4 @@ std::vector<SidePoint> PatchSides::points(std::size_t line, std::size_t k, Segme
   return points;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

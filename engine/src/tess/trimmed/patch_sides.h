@@ -10,7 +10,7 @@
 #include "tessera/geometry.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns where segment k = 0 .. rate of a patch begins, in the surface's parameters; rate: the end.
 inline double line_at(double from, double to, Segments along, int k) {
@@ -53,4 +53,4 @@ class PatchSides {
   bool starts_inside_ = false;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

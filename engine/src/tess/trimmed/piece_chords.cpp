@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr int max_depth = 20;    // of halves
@@ -314,4 +314,4 @@ void PieceChords::put(const ParameterPoint& end, double to, const Sliver& sliver
   parameters_->push_back(piece.range.from + to * (piece.range.to - piece.range.from));
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

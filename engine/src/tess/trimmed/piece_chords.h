@@ -11,7 +11,7 @@
 #include "tessera/geometry.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The limits of a chord, in parameters of the surface and lengths of the model.
 struct ChordLimits {
@@ -109,4 +109,4 @@ class PieceChords {
   double most_ = 0, error_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

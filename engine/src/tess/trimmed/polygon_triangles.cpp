@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void PolygonTriangles::begin(std::span<const ParameterPoint> points, std::size_t segments) {
   points_.sort(points);
@@ -245,4 +245,4 @@ void PolygonTriangles::start(std::uint32_t place, std::uint32_t edge, const Gap&
   at.gap = gap;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

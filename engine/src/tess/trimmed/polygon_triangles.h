@@ -10,7 +10,7 @@
 #include "tess/trimmed/sweep_line.h"
 #include "tess/trimmed/sweep_points.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// A straight segment between two of a list of points.
 struct PlaneSegment {
@@ -89,4 +89,4 @@ class PolygonTriangles {
   Funnels funnels_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

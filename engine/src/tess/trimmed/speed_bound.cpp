@@ -5,7 +5,7 @@
 
 #include "surface/net/homogeneous.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr double rounding_factor = 1 + 0x1p-40;  // far above the rounding of these sums
@@ -68,4 +68,4 @@ SpeedBound SpeedBound::of(const BezierPatch& patch) {
   return speed;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Bounds on |r_u|, |r_v| and |r_u . r_v| over the patch, in its lengths over its own parameters.
 struct SpeedBound {
@@ -27,4 +27,4 @@ struct SpeedBound {
   double moved(double du, double dv) const;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

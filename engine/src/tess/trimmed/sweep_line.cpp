@@ -1,6 +1,6 @@
 #include "tess/trimmed/sweep_line.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void SweepLine::clear() {
   places_.assign(1, {});
@@ -84,4 +84,4 @@ void SweepLine::erase(std::uint32_t place) {
   free_.push_back(place);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

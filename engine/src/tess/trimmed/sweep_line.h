@@ -8,7 +8,7 @@
 #include "tess/trimmed/funnel.h"
 #include "tess/trimmed/sweep_points.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The edges that the line crosses, in places that stay while an edge is replaced by its successor. Place `bottom` lies
 /// below all edges. Search, insertion and removal take O(log n): the places form a treap (Seidel and Aragon 1996,
@@ -54,4 +54,4 @@ class SweepLine {
   std::uint32_t root_ = no_place, random_ = 1;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

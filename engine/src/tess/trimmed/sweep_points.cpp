@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numeric>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t few_keys = 256;  // std::sort is faster up to here
@@ -57,4 +57,4 @@ void SweepPoints::sort(std::span<const ParameterPoint> points) {
   }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

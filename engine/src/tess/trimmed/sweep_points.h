@@ -7,7 +7,7 @@
 
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Points by growing u, those of one u by growing v. Equal points have one rank. So the sweep line leans a little: no
 /// segment between two ranks is parallel to it.
@@ -38,4 +38,4 @@ class SweepPoints {
   std::vector<std::uint32_t> ranks_;   ///< by index
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 void divide(std::vector<double>& lines, double from, double to, Segments along) {
@@ -134,4 +134,4 @@ ParameterPoint PatchCutter::local(std::uint32_t vertex) const {
   return {patch_.domain.local_u(at.u), patch_.domain.local_v(at.v)};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -20,7 +20,7 @@
 #include "tessera/geometry.h"
 #include "trim/trim_piece.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// What the edges of a shape demand of the boundary of a cut patch. Chords end where curves do.
 class EdgeDemands {
@@ -125,4 +125,4 @@ class PatchCutter {
   double sliver_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -6,7 +6,7 @@
 
 #include "tess/trimmed/patch_points.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Edges up to this many times the rounding are looked at: bounds of their lengths may be far too large.
@@ -86,4 +86,4 @@ std::uint32_t count_lone_edges(std::span<const VertexMerger::Triangle> triangles
   return lone;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

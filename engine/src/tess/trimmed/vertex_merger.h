@@ -13,7 +13,7 @@
 #include "tessera/bezier_patch.h"
 #include "tessera/geometry.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// How the positions of a patch's vertices are rounded.
 struct VertexRounding {
@@ -52,4 +52,4 @@ class VertexMerger {
 /// The number of edges that one triangle alone has.
 std::uint32_t count_lone_edges(std::span<const VertexMerger::Triangle> triangles);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

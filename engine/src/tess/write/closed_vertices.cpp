@@ -7,7 +7,7 @@
 #include "tess/trimmed/patch_points.h"
 #include "tess/write/vertex_views.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t edited_patches_per_task = 16, places_per_task = 512;
@@ -119,4 +119,4 @@ Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::o
   return parallel_for(closed.first_members.size() - 1, places_per_task, quiet, move);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

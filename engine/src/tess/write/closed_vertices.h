@@ -7,7 +7,7 @@
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Writes vertices and triangles that are inserted into whole patches, then the common positions of all vertices along
 /// edges, and common normals where these lie within `crease_angle`. All patches must have been written. Errors:
@@ -15,4 +15,4 @@ namespace tessera::inline abi_0_1 {
 Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
                     const MeshViews& out, const Execution& execution);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

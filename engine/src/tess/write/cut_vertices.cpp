@@ -8,7 +8,7 @@
 #include "tess/trimmed/patch_points.h"
 #include "tess/write/vertex_views.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t cut_patches_per_task = 4;
@@ -106,4 +106,4 @@ Status write_cut(const PatchSet::Impl& set, const CertifiedPlan& plan, std::opti
   return parallel_for(plan.cuts().size(), cut_patches_per_task, {.cancel = execution.cancel}, write);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -7,7 +7,7 @@
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Writes vertices, triangles and patch numbers of all cut patches, after whole ones and their copies: vertices on the
 /// border of a whole patch take its positions, and its normals where these lie within `crease_angle` all along it.
@@ -15,4 +15,4 @@ namespace tessera::inline abi_0_1 {
 Status write_cut(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
                  const MeshViews& out, const Execution& execution);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "basis/bernstein.h"
 #include "kernel/table/kernel_table.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t tile = kernel::mesh_tile;
@@ -306,4 +306,4 @@ std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std:
   return maker.take();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -14,7 +14,7 @@
 #include "tess/cells/stitched_patch.h"
 #include "tessera/bezier_patch.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Tables that are looked up by number while a mesh is written. Rates are at most 4096.
 class MeshTables {
@@ -135,4 +135,4 @@ class MeshTables {
   std::size_t bytes_ = 0;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -10,7 +10,7 @@
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t compared_per_task = 1024;
@@ -158,4 +158,4 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
       static_cast<std::ptrdiff_t>(changed.index())};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

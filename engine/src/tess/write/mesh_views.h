@@ -7,7 +7,7 @@
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Returns a mesh with all attributes, filled with zeros.
 Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
@@ -36,4 +36,4 @@ Status no_float_blocks();
 /// Errors: unsupported, stale (index = the first patch of another shape).
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

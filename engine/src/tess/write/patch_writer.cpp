@@ -9,7 +9,7 @@
 #include "tess/write/vertex_job.h"
 #include "tess/write/vertex_views.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns a side's first control point as packed. It is not computed as w p / w, which would depend on the weight.
@@ -234,4 +234,4 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   if (plan_.shares_vertices()) share_indices(k, out);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 namespace kernel {
 struct KernelTable;
@@ -21,7 +21,7 @@ struct VertexJob;
 /// Writes patches [begin, end) of a plan, as triangles, or with quads if there are views of these, and nothing outside
 /// their records. The bits of a vertex do not depend on the range. Borders of patches that are one edge have the same
 /// positions.
-class [[gnu::visibility("hidden")]] PatchWriter {
+class PatchWriter {
  public:
   /// `bytes`: how much will be written, if not the whole mesh.
   PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
@@ -35,24 +35,24 @@ class [[gnu::visibility("hidden")]] PatchWriter {
  private:
   friend class VertexPass;
   /// Writes positions and normals of a patch whose vertices are its own; may overwrite any records before `end`.
-  void write_vertices(std::size_t k, std::size_t end, VertexJob & vertices) const;
+  void write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const;
   /// Sets all that a patch's vertices are written from; the caller sets where they are written.
-  void prepare(std::size_t k, VertexJob & vertices) const;
-  void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division, VertexJob& vertices)
-      const;
+  void prepare(std::size_t k, VertexJob& vertices) const;
+  void prepare_points(const PatchSet::Slot& slot, const float* net, const Division& division,
+                      VertexJob& vertices) const;
   void prepare_weights(std::size_t k, const BlockGroup& group, const Division& division, VertexJob& vertices) const;
   /// Writes the triangles of a patch; may overwrite anything before `end`. `lines`: if not null, it stands at `out`,
   /// and the indices are written past the caches.
-  void write_triangles(std::size_t k, std::uint32_t * out, std::uint32_t * end, kernel::StreamState* lines = nullptr)
-      const;
+  void write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end,
+                       kernel::StreamState* lines = nullptr) const;
   /// Replaces a patch's own vertices by shared ones in the indices of its strips.
-  void share_indices(std::size_t k, std::uint32_t * indices) const;
+  void share_indices(std::size_t k, std::uint32_t* indices) const;
   void write_quads(std::size_t k) const;
   /// Writes positions from the double control points: rounded once to float, in place of those from float sums; and in
   /// double, with normals, for plans with positions in double.
   void write_f64(std::size_t k) const;
   /// Writes only the vertices that a patch owns, in a mesh with shared vertices.
-  void write_owned(std::size_t k, VertexJob & vertices) const;
+  void write_owned(std::size_t k, VertexJob& vertices) const;
   void write_ring(std::size_t k, const Division& part, VertexJob& vertices) const;
   void write_parameters(std::size_t k) const;
   void write_patch_numbers(std::size_t k) const;
@@ -65,4 +65,4 @@ class [[gnu::visibility("hidden")]] PatchWriter {
   bool streaming_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

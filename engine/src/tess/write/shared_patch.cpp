@@ -7,7 +7,7 @@
 #include "tess/write/patch_writer.h"
 #include "tess/write/vertex_job.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// The largest number of ring points that are evaluated at once. A border has no more.
@@ -107,4 +107,4 @@ void PatchWriter::write_quads(std::size_t k) const {
     }
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "tess/cells/stitched_patch.h"
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// The source of exact normals: a patch and its division.
 struct ExactPatch {
@@ -82,4 +82,4 @@ inline void set_records(kernel::MeshRecords& out, const View3<float>& view, std:
   out.stride = view.stride;
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

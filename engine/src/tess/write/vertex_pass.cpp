@@ -1,6 +1,6 @@
 #include "tess/write/vertex_pass.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 void VertexPass::write(std::size_t patch) {
   if (writer_.plan_.division(patch).empty) return;
@@ -20,4 +20,4 @@ void VertexPass::finish() {
   writer_.kernels_.finish_streaming();
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

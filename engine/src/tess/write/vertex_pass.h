@@ -4,7 +4,7 @@
 #include "tess/write/patch_writer.h"
 #include "tess/write/vertex_job.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Writes patch after patch, fastest in the order of the mesh, and nothing outside their records. Lives on a task's
 /// stack; allocates nothing.
@@ -26,4 +26,4 @@ class VertexPass {
   VertexJob vertices_;
 };
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

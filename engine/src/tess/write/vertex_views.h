@@ -5,7 +5,7 @@
 
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 template <class T>
 void put_vector(const View3<T>& view, std::size_t at, const Vec3& p) {
@@ -25,4 +25,4 @@ inline void copy_positions(const MeshViews& out, std::size_t from, std::size_t t
   if (!out.position_f64.empty()) copy(out.position_f64, from, to);
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

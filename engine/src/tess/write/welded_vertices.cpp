@@ -7,7 +7,7 @@
 #include "tess/plan/ring_vertices.h"
 #include "tess/write/vertex_views.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t copies_per_piece = 64;
@@ -87,4 +87,4 @@ Status write_joined_normals(const VertexCopies& joins, const CertifiedPlan& plan
   return {};
 }
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1

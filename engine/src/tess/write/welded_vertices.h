@@ -6,7 +6,7 @@
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
 
-namespace tessera::inline abi_0_1 {
+namespace tessera { inline namespace abi_0_1 {
 
 /// Copies positions within a written mesh, and gives the vertices of poles made by welding the normals that they have
 /// where the border is a point. Limited to vertices whose patch, or the patch that they are copied from, `is_written`
@@ -18,4 +18,4 @@ Status write_welded(const VertexCopies& weld, const CertifiedPlan& plan, const P
 Status write_joined_normals(const VertexCopies& joins, const CertifiedPlan& plan, const View3<float>& normals,
                             const Execution& execution, FunctionRef<bool(std::size_t patch)> is_written);
 
-}  // namespace tessera::inline abi_0_1
+}}  // namespace tessera::abi_0_1
