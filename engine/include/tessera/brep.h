@@ -22,9 +22,9 @@ inline constexpr std::uint32_t no_id = 0xffffffff;
 struct Coedge {
   std::uint32_t edge = no_id;  ///< index into Shape::edges
   bool reversed = false;       ///< whether the loop's curve runs from the edge's end to its start
-  /// The loop's curve at t is the edge's point at s: x of this curve at s is t. It is monotone, of degree 1 (rational:
-  /// fractions of linear functions relate the parameters of arcs). Empty: t = s, or t = from + to - s where reversed,
-  /// with the ends of the curve's domain.
+  /// Maps the edge's parameter s to the parameter t of the loop's curve: t is x of this curve at s. It is monotone, of
+  /// degree 1 (rational: the parameters of two arcs are related by a fraction of linear functions). Empty: t = s, or
+  /// t = from + to - s where reversed, with the ends of the curve's domain.
   std::optional<Curve> parameter = {};
   friend bool operator==(const Coedge&, const Coedge&) = default;  ///< by all members
 };

@@ -25,9 +25,9 @@ struct SurfaceSource {
   std::function<Result<Model>(std::uint64_t first, std::uint64_t end)> read;
 };
 
-/// Returns how near surfaces must come to a part to have a say in its mesh with these options: four times the largest
-/// distance of borders that are joined. `box`: the whole model's. Chains of more than four borders that are joined one
-/// to the next, over a longer way, are beyond it.
+/// Returns the distance within which other surfaces can change a part's mesh with these options: four times the largest
+/// distance at which borders are joined. `box`: the whole model's. A chain of more than four borders, each joined to the
+/// next, can reach farther; that is not looked for.
 double part_reach(const TessellationOptions& options, const Box3& box);
 
 /// The surfaces of a part, before they are loaded.

@@ -25,11 +25,10 @@ struct Ray {
   double tfar = std::numeric_limits<double>::infinity();  ///< at least tnear
   /// Exact mode: the largest distance from the origin to a surface that the ray starts on. 0: every root is a hit.
   ///
-  /// Each surface that passes the origin at no more than this distance has one root that stands for the origin. That
-  /// root is no hit, wherever rounding has moved it. For an origin that is a hit's position, use
-  /// RayScene::spawn_offset().
+  /// A ray that starts on a surface meets it at t = 0 up to rounding. That one intersection with each surface within
+  /// this distance is ignored; all others count. For an origin that is a hit's position, use RayScene::spawn_offset().
   ///
-  /// Kantorovich's theorem decides which root that is: it shows that there is one within this distance of the origin
+  /// Kantorovich's theorem decides which one that is: it shows that there is a root within this distance of the origin
   /// and no other near it. So other hits are kept, at however small a distance and angle, as long as the surface
   /// departs from the ray in between by more than the tolerance. Where it does not, as along a plane or over a chord of
   /// sqrt(8 tolerance / curvature), all of that stretch counts as the origin.

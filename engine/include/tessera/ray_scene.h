@@ -72,8 +72,8 @@ struct RaySceneOptions {
   /// part of a model also has the patches of other parts that share borders and corners with it, then the parts
   /// together return each hit of the whole model once, also in all().
   std::optional<std::size_t> patches = {};
-  /// Exact mode: prepares for edits now. If false, the first refit does, and then takes as long as a rebuild. Rays take
-  /// about a fifth longer in a scene that follows edits.
+  /// Exact mode. True: builds for refitting now. False: the first refit is a rebuild. Rays take about a fifth longer in
+  /// a scene built for refitting.
   bool editable = false;
   /// Exact mode: whether edges of shapes are hits, where rays pass them within their gap. If false, rays meet faces
   /// alone.

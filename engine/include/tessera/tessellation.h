@@ -82,8 +82,9 @@ struct TessellationOptions {
   /// The largest distance of borders that are joined: 0 to a twentieth of the set's size. 0 joins only borders of the
   /// same bits. Borders shorter than it become points.
   ///
-  /// If empty: an eighth of the tolerance, or 1e-6 of the set's size without a tolerance, but no more than an eighth of
-  /// either border's size; and borders become points only if they are no longer than 2^-18 of their patch.
+  /// Empty: an eighth of the tolerance; without a tolerance, 1e-6 of the set's size. Borders are then joined only if an
+  /// eighth of either's size is no less than their distance, and become points only if they are no longer than 2^-18 of
+  /// their patch.
   std::optional<double> weld = {};
   /// The largest angle between normals that are joined, radians, 0 to pi. If empty, each patch has its own normals.
   ///
@@ -190,10 +191,10 @@ struct MeshChange {
 /// mesh that has any is never written past the caches.
 ///
 /// - `smallest`: if one patch needs doubles, all patches take them.
-/// - Pixels: so do whole patches beside cut ones that need them.
+/// - Pixels: a whole patch beside a cut patch of doubles takes doubles too.
 /// - A common border of a patch of doubles and one of floats has the vertices of doubles.
-/// - Borders with such vertices that were one edge when the plan was made keep the vertices of one border in later
-///   revisions, as welded ones do.
+/// - Two borders of doubles that were equal when the plan was made are welded from then on: after edits, both have the
+///   vertices of one.
 ///
 /// No cracks: borders whose packed control points are the same bits, in either direction, run at one rate, and their
 /// vertices are the same bits in both patches. Each patch has an inner grid at its own rates, and strips of triangles

@@ -20,9 +20,9 @@ struct LoopPieces {
   double largest_gap = 0;
   std::size_t gap_curve = 0;     ///< the curve before the largest gap
   int turns_u = 0, turns_v = 0;  ///< how often it runs around the surface along u and along v
-  /// Whether it encloses an odd number of copies of the place above the domain's lower left corner, just right of the
-  /// seam, and above the lower right corner, just left of the seam: on a surface that is periodic along u and v, if
-  /// it runs around neither.
+  /// On a surface that is periodic along u and v, for a loop that runs around neither: whether it encloses a point just
+  /// above the domain's lower left corner and just right of the seam (holds_left), or just above the lower right corner
+  /// and just left of the seam. A point counts as enclosed if an odd number of its copies, a period apart, are.
   bool holds_left = false, holds_right = false;
 };
 

@@ -54,7 +54,7 @@ class ItemReader {
     if (taken) taken->surface.reset();
     return taken;
   }
-  /// Takes the text after the last item. `nothing`: what was passed over, if there are no surfaces.
+  /// Takes the text after the last item. `nothing`: if the file has no surfaces, what it has instead; else null.
   virtual Status end(TextCursor& cursor, const PassedOver* nothing) const = 0;
   /// The most surfaces that a file of so many bytes may have, or 0 if they are not known before.
   virtual std::size_t expected(std::uint64_t bytes) const = 0;

@@ -20,8 +20,9 @@ constexpr auto grade_of_weight = [] {
   return grades;
 }();
 
-/// Fewer segments have one length in each half, because there are so few of such that patches share their tables of
-/// weights (MeshTables): tables for a patch alone would take more memory than its triangles.
+/// Divisions into fewer segments than this are not graded: all segments of a half have one length. There are few such
+/// divisions, so patches share their tables of weights (MeshTables). A table for one patch would take more memory than
+/// its triangles.
 constexpr std::int64_t min_graded = 12;
 
 /// The segments of some eighths that are divided together.

@@ -33,7 +33,7 @@ struct ClosedEdges {
   double gap = 0;                            ///< the largest
   /// Cut patches whose triangles are divided, by growing place among the cuts: their bounds no longer hold.
   std::vector<std::uint32_t> edited_cuts;
-  /// By how much fewer segments of triangles lie on the boundary of the mesh.
+  /// How many boundary edges of the mesh closing has removed.
   std::int64_t closed_segments = 0;
 };
 

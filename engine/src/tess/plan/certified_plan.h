@@ -140,7 +140,8 @@ class CertifiedPlan {
   std::unique_ptr<Rare> rare_;  ///< null if none of these are known of any patch
   std::uint32_t open_edges_ = 0;
   bool has_f64_positions_ = false;
-  std::vector<std::uint8_t> straddles_;   ///< `[patch]`: 1 if its bounds hold wherever triangles lie; empty if for none
+  std::vector<std::uint8_t>
+      straddles_;  ///< `[patch]`: 1 if its bounds hold for triangles across its middle too; empty if for none
   std::vector<RingSource> ring_sources_;  ///< `[border]`: itself if it owns its vertices; empty if nothing is shared
 };
 

@@ -29,9 +29,9 @@ std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
 }
 
 double CertifiedPlanner::straddling_distance(std::size_t patch, Side side, const CertifiedPlan& plan) const {
-  // The border is odd, and has more segments than the patch needs. If no inner points lie between them, a segment of the
-  // opposite border may cross the middle as well: then that is odd too. By the real rates there the division of a patch
-  // would depend on patches that it does not touch.
+  // The border has an odd number of segments, more than the patch needs, so its middle segment crosses the middle of the
+  // patch. Without inner points between them, the opposite border's may cross it too. That border is taken to have an odd
+  // number as well: its real rate depends on patches that this one does not touch.
   assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
   const int rate = along(plan.segments_[patch], side).rate() + 1;
   const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);

@@ -19,7 +19,7 @@ struct SpeedBound {
   /// The product is at most |r_u| |r_v|. For polynomial patches of small degrees it also lies in the hull of the
   /// products of all m (V_(i+1)j - V_ij) with all n (V_k(l+1) - V_kl): so it is about 0 for rectangles.
   static SpeedBound of(const BezierPatch& patch);
-  /// Returns the bounds over other parameters, whose ranges are so long.
+  /// Returns the bounds for parameters that run over [0, range_u] and [0, range_v] instead of [0, 1].
   SpeedBound over(double range_u, double range_v) const {
     return {u / range_u, v / range_v, product / (range_u * range_v)};
   }
