@@ -34,6 +34,7 @@ TEST(BeyondTolerance, RoundingCostsItsPatchesAlone) {
       const Mesh mesh = mesh_of(set, plan);
       expect_closed(mesh);
       expect_bounds(set, mesh, plan.bounds());
+      EXPECT_EQ(tessera::tessellate(set, options).status().index(), static_cast<std::ptrdiff_t>(body.size()));
       options.precision = Precision::double_precision;
       EXPECT_TRUE(good(Tessellation::make(set, options)).patches_beyond_tolerance().empty());
     }

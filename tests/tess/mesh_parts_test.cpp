@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <vector>
 
 #include "support/synthetic_sets.h"
@@ -44,6 +45,34 @@ TEST(MeshParts, EachSurfaceThatHasTrianglesIsOne) {
     EXPECT_EQ(parts[k].first_triangle, 12 * k);
     EXPECT_EQ(parts[k].triangle_count, 12u);
   }
+}
+
+TEST(Tessellate, OfAModelIsThePlansMeshWithItsParts) {
+  const Model surfaces = model();
+  const PatchSet set = value_of(make_patch_set(surfaces));
+  const TessellationOptions options{.tolerance = 1e-3};
+  const Tessellation plan = value_of(Tessellation::make(set, options));
+  Mesh wanted = value_of(plan.allocate());
+  EXPECT_TRUE(plan.run(set, wanted.views()).ok());
+  for (const Mesh& mesh :
+       {value_of(tessera::tessellate(set, options)), value_of(tessera::tessellate(surfaces, options))}) {
+    EXPECT_EQ(mesh.positions, wanted.positions);
+    EXPECT_EQ(mesh.normals, wanted.normals);
+    EXPECT_EQ(mesh.indices, wanted.indices);
+  }
+  EXPECT_TRUE(value_of(tessera::tessellate(set, options)).parts.empty());
+  const std::vector<MeshPart> parts = value_of(tessera::tessellate(surfaces, options)).parts;
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_EQ(parts[2].name, "back");
+}
+
+TEST(Tessellate, PassesErrorsOn) {
+  EXPECT_EQ(tessera::tessellate(model(), {}).status().code(), StatusCode::invalid_argument);
+  EXPECT_FALSE(tessera::tessellate(Model{}, {.tolerance = 1e-3}).ok());
+  const std::atomic<bool> cancel = true;
+  Execution execution;
+  execution.cancel = &cancel;
+  EXPECT_EQ(tessera::tessellate(model(), {.tolerance = 1e-3}, execution).status().code(), StatusCode::cancelled);
 }
 
 TEST(MeshParts, PatchesOfOneSurfaceAreOnePart) {

@@ -33,6 +33,7 @@
 #include "tessera/surface.h"
 #include "tessera/tensor_patch.h"
 #include "tessera/tessellation.h"
+#include "tessera/throw.h"
 #include "tessera/topology.h"
 #include "tessera/trim_loop.h"
 #include "tessera/trim_region.h"

@@ -1,0 +1,48 @@
+// Meshes in one call.
+
+#include <span>
+#include <string>
+
+#include "base/text.h"
+#include "tessera/guard.h"
+#include "tessera/mesh.h"
+#include "tessera/model.h"
+#include "tessera/patch_set.h"
+#include "tessera/tessellation.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+Status refusal(std::span<const std::uint32_t> patches, const char* fault) {
+  return {StatusCode::invalid_argument,
+          counted(patches.size(), "patch", "patches") + " " + fault + ": a Tessellation has the mesh and its bounds",
+          static_cast<std::ptrdiff_t>(patches.front())};
+}
+
+}  // namespace
+
+Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options, const Execution& execution) {
+  const Result<Tessellation> plan = Tessellation::make(set, options, execution);
+  if (!plan) return plan.status();
+  if (const auto beyond = plan->patches_beyond_tolerance(); !beyond.empty())
+    return refusal(beyond, "cannot keep the tolerance");
+  if (const auto crossed = plan->crossed_patches(); !crossed.empty())
+    return refusal(crossed, "without triangles, because their trimming loops cross");
+  Result<Mesh> mesh = plan->allocate();
+  if (!mesh) return mesh;
+  if (Status status = plan->run(set, mesh->views(), execution); !status.ok()) return status;
+  return mesh;
+}
+
+Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, const Execution& execution) {
+  const Result<PatchSet> set = make_patch_set(model);
+  if (!set) return set.status();
+  Result<Mesh> mesh = tessellate(*set, options, execution);
+  if (!mesh) return mesh;
+  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, *set, model);
+  if (!parts) return parts.status();
+  mesh->parts = *std::move(parts);
+  return mesh;
+}
+
+}}  // namespace tessera::abi_0_1
