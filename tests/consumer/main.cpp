@@ -26,7 +26,7 @@ void cast_ray(const tessera::PatchSet& set) {
   require(hit.kind == tessera::HitKind::hit && std::abs(hit.t - (5 - dome_height(0.3))) < 1e-6,
           "a ray from above does not meet the dome where it stands");
   ray.direction = {0, 0, 1};
-  require(!scene.occluded(ray), "a ray away from the dome meets it");
+  require(scene.occluded(ray) == tessera::HitKind::miss, "a ray away from the dome meets it");
 }
 
 }  // namespace

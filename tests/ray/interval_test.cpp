@@ -135,7 +135,7 @@ std::size_t count_lost(const RayScene& scene, const std::vector<Ray>& rays) {
     until.tfar = hits[k].t;
     const Hit again = scene.closest(until);
     const bool is_same = again.t == hits[k].t || hits[k].flags.uncertified;
-    lost += again.kind != HitKind::hit || again.t > hits[k].t || !is_same || !scene.occluded(until);
+    lost += again.kind != HitKind::hit || again.t > hits[k].t || !is_same || scene.occluded(until) != HitKind::hit;
   }
   EXPECT_GT(met, rays.size() / 2);
   return lost;

@@ -41,7 +41,7 @@ TEST(InvalidRays, AreMissesOfTheirOwnKind) {
     const Hit hit = scene.closest(bad);
     EXPECT_EQ(hit.kind, HitKind::invalid_ray);
     EXPECT_EQ(hit.t, infinity);
-    EXPECT_FALSE(scene.occluded(bad));
+    EXPECT_EQ(scene.occluded(bad), HitKind::invalid_ray);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(InvalidRays, UnusualButValid) {
   EXPECT_EQ(scene.closest(late).kind, HitKind::miss);
   late.tnear = 1e300;
   EXPECT_EQ(scene.closest(late).kind, HitKind::miss);
-  EXPECT_FALSE(scene.occluded(late));
+  EXPECT_EQ(scene.occluded(late), HitKind::miss);
   EXPECT_EQ(scene.closest(ray({0, 0, 1e18}, {1, 0, 0})).kind, HitKind::miss);
 }
 
@@ -103,7 +103,7 @@ TEST(InvalidRays, NoneReachesASetTooFarAway) {
     for (const Ray& one : rays)
       if (away > 1e35) {
         EXPECT_EQ(scene.closest(one).kind, HitKind::miss) << away;
-        EXPECT_FALSE(scene.occluded(one)) << away;
+        EXPECT_EQ(scene.occluded(one), HitKind::miss) << away;
       }
   }
 }

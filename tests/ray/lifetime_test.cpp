@@ -22,13 +22,13 @@ TEST(Lifetime, StaleUntilRefit) {
   EXPECT_EQ(scene.closest({&down, 1}, {&hit, 1}).code(), StatusCode::stale);
   EXPECT_EQ(scene.occluded({&down, 1}, {&occluded, 1}).code(), StatusCode::stale);
   EXPECT_EQ(scene.closest(down).kind, HitKind::invalid_ray);
-  EXPECT_FALSE(scene.occluded(down));
+  EXPECT_EQ(scene.occluded(down), HitKind::invalid_ray);
   EXPECT_EQ(scene.revision(), revision);
 
   ASSERT_TRUE(scene.refit().ok());
   EXPECT_EQ(scene.revision(), set.revision());
   EXPECT_NEAR(scene.closest(down).t, 3, 1e-12);
-  EXPECT_TRUE(scene.occluded(down));
+  EXPECT_EQ(scene.occluded(down), HitKind::hit);
 }
 
 TEST(Lifetime, EditsThatTearOrWeldBorders) {

@@ -141,7 +141,8 @@ TEST(Parts, NeighboursAreNotHit) {
     const SeamPlace place = beside_seam(patches, random, rays::power(random, 1e-15, 1e-6));
     Ray out = leaving(scene, place, random);
     out.tfar = 1e-6;
-    for (const Part& part : parts) again += part.scene.occluded(out) || part.scene.closest(out).kind == HitKind::hit;
+    for (const Part& part : parts)
+      again += part.scene.occluded(out) == HitKind::hit || part.scene.closest(out).kind == HitKind::hit;
   }
   EXPECT_EQ(again, 0u);
   for (const Part& part : parts) {
@@ -149,7 +150,7 @@ TEST(Parts, NeighboursAreNotHit) {
     const std::vector<Hit> hits = closest(part.scene, rays);
     for (std::size_t k = 0; k < rays.size(); ++k) {
       beyond += hits[k].kind == HitKind::hit && hits[k].patch >= part.own;
-      EXPECT_EQ(hits[k].kind == HitKind::hit, part.scene.occluded(rays[k]));
+      EXPECT_EQ(hits[k].kind, part.scene.occluded(rays[k]));
       EXPECT_EQ(hits[k].t, part.scene.closest(rays[k]).t);
     }
   }

@@ -38,14 +38,14 @@ TEST(Spawn, LeavingASphere) {
       const double sine = std::pow(10, uniform(random, -9, 0));
       const Vec3 direction = std::sqrt(1 - sine * sine) * along + sine * out;
       EXPECT_EQ(scene.closest(leaving(scene, from.position, direction)).kind, HitKind::miss) << k << " " << sine;
-      EXPECT_FALSE(scene.occluded(leaving(scene, from.position, direction)));
+      EXPECT_EQ(scene.occluded(leaving(scene, from.position, direction)), HitKind::miss);
       if (sine < 1e-5) continue;  // the chord is no deeper than the tolerance
       const Vec3 inwards = direction - 2 * sine * out;
       const Hit other = scene.closest(leaving(scene, from.position, inwards));
       ASSERT_EQ(other.kind, HitKind::hit) << k << " " << sine;
       // The tolerance, and the rounding of the origin, move a chord's end by that over its angle.
       EXPECT_NEAR(other.t, 2 * sine, 1e-11 * (1 + max_abs(centre) / 100) / sine) << k;
-      EXPECT_TRUE(scene.occluded(leaving(scene, from.position, inwards)));
+      EXPECT_EQ(scene.occluded(leaving(scene, from.position, inwards)), HitKind::hit);
     }
   }
 }

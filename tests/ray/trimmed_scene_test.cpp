@@ -46,7 +46,7 @@ void expect_kept(const Face& face, const RaySceneOptions& options, const std::ve
     EXPECT_EQ(hits[k].kind, expected.empty() ? HitKind::miss : HitKind::hit) << k;
     const Hit alone = scene.closest(rays[k]);
     EXPECT_EQ(alone.kind, hits[k].kind) << k;
-    EXPECT_EQ(scene.occluded(rays[k]), occluded[k] != 0) << k;
+    EXPECT_EQ(scene.occluded(rays[k]) == HitKind::hit, occluded[k] != 0) << k;
     if (expected.empty()) continue;
     EXPECT_NEAR(hits[k].t, expected[0].t, 1e-9) << k;
     EXPECT_EQ(alone.t, hits[k].t) << k;

@@ -58,7 +58,7 @@ void bad_single_rays(Table& table, const RayScene& scene) {
     table.gives(input, "HitKind::invalid_ray, not occluded; the rays beside it are answered",
                 answered && hit.kind == HitKind::invalid_ray && hit.t == infinity && dark[1] == 0 &&
                     first.kind == HitKind::hit && hits[2].t == first.t && dark[0] == 1 && dark[2] == 1 &&
-                    scene.closest(ray).kind == HitKind::invalid_ray && !scene.occluded(ray));
+                    scene.closest(ray).kind == HitKind::invalid_ray && scene.occluded(ray) == HitKind::invalid_ray);
   };
   row("NaN in the origin", [](Ray& r) { r.origin.y = not_a_number; });
   row("infinity in the origin", [](Ray& r) { r.origin.z = infinity; });
@@ -126,8 +126,9 @@ void rays_as_batches(Table& table, const std::string& mode, const RaySceneOption
   table.row("a set that was edited since", stale, scene.closest(rays, hits), untouched);
   table.row("a set that was edited since: occluded()", stale, scene.occluded(rays, dark), untouched);
   table.row("a set that was edited since: all()", stale, scene.all(rays, lists), empty);
-  table.gives("a set that was edited since, one ray", "HitKind::invalid_ray, not occluded",
-              scene.closest(sound_ray).kind == HitKind::invalid_ray && !scene.occluded(sound_ray));
+  table.gives(
+      "a set that was edited since, one ray", "HitKind::invalid_ray, of closest() and occluded()",
+      scene.closest(sound_ray).kind == HitKind::invalid_ray && scene.occluded(sound_ray) == HitKind::invalid_ray);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ inline void check_ray(std::span<const BezierPatch> patches, const RayScene& scen
   const bool met = hit.kind == HitKind::hit;
   const double speed = length(ray.direction);
   ++tally.rays;
-  tally.contradicted += scene.occluded(ray) != met;
+  tally.contradicted += (scene.occluded(ray) == HitKind::hit) != met;
   tally.incomplete += hit.flags.incomplete;
   tally.false_hits += met && !is_on_ray(patches, ray, hit, tolerance);
   tally.undecidable += !verdict.hit() && !verdict.miss();

@@ -138,7 +138,7 @@ class SolidRays {
   }
   void check(const Ray& ray, bool is_odd, std::size_t) {
     const Hit nearest = scene_.closest(ray);
-    if (is_odd && (nearest.kind != HitKind::hit || !scene_.occluded(ray))) ++tally_.leaks;
+    if (is_odd && (nearest.kind != HitKind::hit || scene_.occluded(ray) != HitKind::hit)) ++tally_.leaks;
     const std::vector<Hit>& hits = all(ray);
     const bool is_seam = nearest.flags.seam || std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.seam; });
     const bool is_incomplete = std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.incomplete; });

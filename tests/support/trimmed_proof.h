@@ -164,7 +164,7 @@ class TrimmedCheck {
   bool misses_first() {
     const Hit hit = of_.scene->closest(ray_);
     const bool is_met = hit.kind == HitKind::hit;
-    tally_.contradicted += of_.scene->occluded(ray_) != is_met;
+    tally_.contradicted += (of_.scene->occluded(ray_) == HitKind::hit) != is_met;
     tally_.incomplete += hit.flags.incomplete;
     tally_.edges += is_met && hit.flags.seam;
     if (is_met) check_place(hit);

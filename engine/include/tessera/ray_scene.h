@@ -182,9 +182,9 @@ class RayScene {
   Status all(std::span<const Ray> rays, HitLists& lists, const Execution& execution = {}) const;
   /// Finds the closest hit of one ray. A stale scene, as any error, returns HitKind::invalid_ray.
   Hit closest(const Ray& ray) const;
-  /// Whether anything lies on one ray. A stale scene, as any error, returns false: use the overload with a Status where
-  /// the set may have been edited.
-  bool occluded(const Ray& ray) const;
+  /// Whether anything lies on one ray: hit or miss. An invalid ray and any error, such as a stale scene, return
+  /// HitKind::invalid_ray.
+  HitKind occluded(const Ray& ray) const;
 
   /// Updates the scene after edits of the set, however they were made. Between an edit and the refit all queries are
   /// errors. Does nothing if nothing was edited.

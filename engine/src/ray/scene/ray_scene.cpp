@@ -206,9 +206,10 @@ Hit RayScene::closest(const Ray& ray) const {
   return hit;
 }
 
-bool RayScene::occluded(const Ray& ray) const {
+HitKind RayScene::occluded(const Ray& ray) const {
   std::uint8_t result = 0;
-  return occluded({&ray, 1}, {&result, 1}).ok() && result != 0;
+  if (!is_valid(ray) || !occluded({&ray, 1}, {&result, 1}).ok()) return HitKind::invalid_ray;
+  return result != 0 ? HitKind::hit : HitKind::miss;
 }
 
 Status RayScene::refit(const Execution& execution) {
