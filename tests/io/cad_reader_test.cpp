@@ -227,6 +227,8 @@ TEST_F(CadReader, IsLookedForInThisOrder) {
   const Variable path("PATH", "/no/such/folder:" + (folder_ / "bin") + ":/bin:/usr/bin");
   {
     const Variable variable("TESSERA_CAD_READER", other);
+    EXPECT_EQ(find_cad_reader({.reader = named})->string(), named);
+    EXPECT_EQ(find_cad_reader()->string(), other);
     expect(named, StatusCode::internal, "the CAD reader " + named + " ended without a greeting (exit status 11)");
     expect("", StatusCode::internal, "the CAD reader " + other + " ended without a greeting (exit status 12)");
   }
@@ -253,7 +255,9 @@ TEST_F(CadReader, ItsLackIsAnErrorThatSaysWhatToDo) {
     expect_refused(read, StatusCode::unsupported, Status::no_index,
                    part_ +
                        ": STEP files are read by the program tessera-cad-reader, which is neither beside this "
-                       "program, nor in its libexec/tessera, nor on PATH: run tools/cad_reader.sh in Tessera's");
+                       "program, nor in its libexec/tessera, nor on PATH: install the package tessera-cad-reader, run "
+                       "tools/cad_reader.sh in Tessera's");
+  expect_refused(find_cad_reader(), StatusCode::unsupported, Status::no_index, "CAD files are read by the program");
   // The file comes first.
   expect_refused(read_model(folder_ / "none.igs"), StatusCode::io_error, Status::no_index,
                  "none.igs: cannot be opened");

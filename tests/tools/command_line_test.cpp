@@ -13,7 +13,15 @@ TEST_F(CommandLine, HelpAndVersion) {
     const std::string words = output_of({command, "--help"});
     EXPECT_NE(words.find(std::string("\n  tessera ") + command), std::string::npos) << "no example: " << words;
   }
-  EXPECT_EQ(output_of({"--version"}).rfind("tessera ", 0), 0u);
+  const std::string version = output_of({"--version"});
+  EXPECT_EQ(version.rfind("tessera ", 0), 0u);
+  EXPECT_NE(version.find("\nReads surfaces: .bpt, .bv, .g2, .json, .obj, .rib, .step"), std::string::npos) << version;
+  const std::vector<std::pair<const char*, std::string>> readers{{"/", "/\n"},
+                                                                 {"/no/reader", "/no/reader, which does not exist\n"}};
+  for (const auto& [reader, words] : readers) {
+    const std::string said = run({"--version"}, {std::string("TESSERA_CAD_READER=") + reader}).output;
+    EXPECT_NE(said.find("\nCAD reader (STEP, IGES, BREP): " + words), std::string::npos) << said;
+  }
 }
 
 TEST_F(CommandLine, NoOptionsFollowTwoDashes) {

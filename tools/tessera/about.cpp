@@ -1,7 +1,34 @@
 #include "commands.h"
 #include "loading.h"
+#include "tessera/cad.h"
+#include "tessera/version.h"
 
 namespace tessera::cli {
+namespace {
+
+constexpr const char* mesh_formats = ".obj, .ply, .stl, .glb, .gltf";
+
+std::string cad_reader_text() {
+  const Result<std::filesystem::path> reader = find_cad_reader();
+  if (!reader) return "not found: " + reader.status().message();
+  std::error_code error;
+  return reader->string() + (std::filesystem::exists(*reader, error) ? "" : ", which does not exist");
+}
+
+}  // namespace
+
+std::string version_text() {
+#ifdef TESSERA_HAS_ZLIB
+  constexpr const char* packed = "read (.obj.gz)";
+#else
+  constexpr const char* packed = "not read: built without zlib";
+#endif
+  const std::string meshes = mesh_formats;
+  return "tessera " TESSERA_VERSION "\nReads surfaces: " + model_formats() + "\nReads meshes: " + meshes +
+         "\nWrites surfaces: .obj, .json, .bpt\nWrites meshes: " + meshes +
+         "; in pieces .ply, .pvtp\nWrites pictures: .png, .exr\nCAD reader (STEP, IGES, BREP): " + cad_reader_text() +
+         "\nPacked files: " + packed + "\n";
+}
 
 void describe(Command& tool) {
   tool.name = "tessera";
@@ -9,7 +36,9 @@ void describe(Command& tool) {
   tool.footer =
       "Files read: surfaces as " + model_formats() +
       ";\n"
-      "meshes as .obj, .ply, .stl, .glb, .gltf. Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2),\n"
+      "meshes as " +
+      mesh_formats +
+      ". Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2),\n"
       "RenderMan (.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind\n"
       "(.json; share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is "
       "skipped.\n"

@@ -2,6 +2,7 @@
 // The commands of the tool. Each adds its options to the command line, and itself to the session if it is chosen.
 
 #include <functional>
+#include <string>
 
 #include "command_line.h"
 #include "common_options.h"
@@ -18,6 +19,8 @@ struct Session {
   Team* team = nullptr;  ///< null: this process alone
 };
 
+/// The text of `tessera --version`: the version, the formats that are read and written, and the CAD reader's place.
+std::string version_text();
 /// Sets name, purpose and closing words of `tessera --help`.
 void describe(Command& tool);
 

@@ -9,7 +9,6 @@
 #include "output.h"
 #include "suggestions.h"
 #include "tessera/execution.h"
-#include "tessera/version.h"
 
 namespace tessera::cli { namespace {
 
@@ -54,7 +53,8 @@ int run(int argc, char** argv) {
   Session session;
   bool version = false;
   describe(tool);
-  tool.add_flag("--version", "Print the version", version);
+  tool.add_flag("--version",
+                "Print the version, the formats that are read and written, and the CAD reader that is found", version);
   tool.add_help();
   add_commands(tool, session);
   session.common.words = result_words(argc, argv);
@@ -66,7 +66,7 @@ int run(int argc, char** argv) {
     return bad_command_line;
   }
   if (parsed.help) return print_text(help_text(tool, parsed.command ? *parsed.command : tool));
-  if (version) return print_text("tessera " TESSERA_VERSION "\n");
+  if (version) return print_text(version_text());
   if (session.command) return run_command(session);
   complain("expected a command (" + listed(tool.command_names(), "or") + "), found none" + hint);
   return bad_command_line;

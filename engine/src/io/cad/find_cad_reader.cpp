@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "io/cad/cad_reader.h"
+#include "tessera/cad.h"
+#include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -70,8 +72,17 @@ Result<std::string> find_cad_reader(const fs::path& named, std::string_view form
   if (std::string file = on_path(); !file.empty()) return file;
   return Status(StatusCode::unsupported,
                 std::string(format) + " files are read by the program tessera-cad-reader, which is neither beside " +
-                    "this program, nor in its libexec/tessera, nor on PATH: run tools/cad_reader.sh in Tessera's " +
-                    "sources, which installs OpenCASCADE and builds it, or name it by TESSERA_CAD_READER");
+                    "this program, nor in its libexec/tessera, nor on PATH: install the package " +
+                    "tessera-cad-reader, run tools/cad_reader.sh in Tessera's sources, which installs OpenCASCADE " +
+                    "and builds it, or name it by TESSERA_CAD_READER");
+}
+
+Result<fs::path> find_cad_reader(const CadOptions& options) {
+  return guarded([&]() -> Result<fs::path> {
+    const Result<std::string> found = find_cad_reader(options.reader, "CAD");
+    if (!found) return found.status();
+    return fs::path(*found);
+  });
 }
 
 }}  // namespace tessera::abi_0_1
