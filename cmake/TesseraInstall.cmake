@@ -1,16 +1,18 @@
 # What `cmake --install` lays down: the libraries, the public headers, the command line, and the package that
 # find_package(tessera) reads, and pkg-config. Each component has its own file of targets, so that the core never looks for Embree.
+# COMPONENT names the Debian package (TesseraPackages.cmake) that holds a file; without it that is libtessera-dev.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 include(TesseraPkgConfig)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tessera)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME libtessera-dev)
 
 # tessera_install_component(NAME TARGET): the library TARGET as tessera::NAME, in tessera_NAME_targets.cmake.
 function(tessera_install_component name target)
   install(TARGETS ${target} EXPORT tessera_${name}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libtessera NAMELINK_COMPONENT libtessera-dev
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT tessera_${name} FILE tessera_${name}_targets.cmake NAMESPACE tessera:: DESTINATION ${package_dir})
@@ -29,7 +31,7 @@ function(tessera_install_python)
       "Where the package for Python is installed; empty: not at all")
   endif()
   if(TESSERA_PYTHON_DIR)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/tessera DESTINATION ${TESSERA_PYTHON_DIR}
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/tessera DESTINATION ${TESSERA_PYTHON_DIR} COMPONENT python3-tessera
       FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "__pycache__" EXCLUDE)
   endif()
 endfunction()
@@ -78,10 +80,11 @@ else()
   list(APPEND left_out PATTERN "tessera_c.h" EXCLUDE)
 endif()
 if(TESSERA_HAS_CAD_READER)
-  install(TARGETS tessera_cad_reader RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera)
+  install(TARGETS tessera_cad_reader RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera COMPONENT tessera-cad-reader)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/include/tessera DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h" ${left_out})
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME tessera)
 # Every installed text may name these, and no other page.
 set(doc_dir ${CMAKE_INSTALL_DATAROOTDIR}/doc/tessera)
 install(FILES ${PROJECT_SOURCE_DIR}/tools/models/FORMAT.md ${PROJECT_SOURCE_DIR}/tools/models/gallery.jpg DESTINATION ${doc_dir})
@@ -95,10 +98,15 @@ if(TESSERA_BUILD_TOOLS)
     set(texts ${PROJECT_BINARY_DIR}/tools/texts)
     install(FILES ${texts}/tessera.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
     install(FILES ${texts}/tessera.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tessera)
-    install(FILES ${texts}/tessera.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _tessera)
+    set(zsh_folder site-functions)
+    if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND EXISTS /etc/debian_version)
+      set(zsh_folder vendor-completions)
+    endif()
+    install(FILES ${texts}/tessera.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} RENAME _tessera)
     install(FILES ${texts}/tessera.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
   endif()
 endif()
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME libtessera-dev)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/licenses/tessera)
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tesseraConfig.cmake.in

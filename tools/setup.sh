@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|cad|mpi|python|test|neon|peers|gallery|docs]
+tools/setup.sh [--for demo|cad|mpi|python|package|test|neon|peers|gallery|docs]
 
 Lists and installs the missing Debian packages that Tessera is built with, by apt-get, with sudo unless it runs as root.
 If nothing is missing, it does nothing and needs neither network nor rights.
@@ -13,7 +13,8 @@ If nothing is missing, it does nothing and needs neither network nor rights.
   --for cad       the demo, and OpenCASCADE for CAD files
   --for mpi       the demo, and Open MPI for models in parts on several machines
   --for python    the demo, OpenCASCADE, and what builds the package for Python
-  --for test      these, and the tests (the default)
+  --for package   these, and what makes Debian packages
+  --for test      what the package for Python needs, and the tests (the default)
   --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
                   test is skipped
   --for peers     the demo, and the programs that Tessera is compared with
@@ -33,6 +34,7 @@ demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcl
 cad_packages=(libocct-data-exchange-dev)
 mpi_packages=(libopenmpi-dev openmpi-bin)
 python_packages=("${cad_packages[@]}" patchelf python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)
+package_packages=("${python_packages[@]}" dpkg-dev file)
 test_packages=("${python_packages[@]}" "${mpi_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev python3
   python3-pytest python3-yaml universal-ctags valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
@@ -45,7 +47,7 @@ purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, cad, mpi, python, test, neon, peers, gallery or docs"
+      (($# >= 2)) || fail "--for wants a word after it: demo, cad, mpi, python, package, test, neon, peers, gallery or docs"
       purpose=$2
       shift 2
       ;;
@@ -65,12 +67,13 @@ case $purpose in
   cad) packages=("${demo_packages[@]}" "${cad_packages[@]}") ;;
   mpi) packages=("${demo_packages[@]}" "${mpi_packages[@]}") ;;
   python) packages=("${demo_packages[@]}" "${python_packages[@]}") ;;
+  package) packages=("${demo_packages[@]}" "${package_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
   neon) packages=("${demo_packages[@]}" "${test_packages[@]}" "${neon_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
   gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
   docs) packages=("${demo_packages[@]}" "${docs_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, cad, mpi, python, test, neon, peers, gallery and docs" ;;
+  *) fail "--for $purpose: no such purpose; there are demo, cad, mpi, python, package, test, neon, peers, gallery and docs" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -14,13 +14,12 @@ from setuptools import Distribution, setup
 from setuptools.command.build_py import build_py
 from wheel.bdist_wheel import bdist_wheel
 
-HERE = pathlib.Path(__file__).resolve().parent
-SOURCES = HERE.parents[1]
+sys.dont_write_bytecode = True  # nothing is written among the sources
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from libraries import SOURCES, copy_libraries, write_licences  # noqa: E402
+
 PREBUILT = os.environ.get("TESSERA_PYTHON_PREBUILT")
 BUILD = pathlib.Path(PREBUILT or os.environ.get("TESSERA_PYTHON_BUILD", SOURCES / "build" / "python"))
-# Every machine has these; a second C++ library in one process does harm.
-OF_THE_SYSTEM = re.compile(r"ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s|z)\.so")
-HEADERS = {"libxsimd-dev", "nlohmann-json3-dev"}  # the packages whose headers are compiled into the library
 
 
 def version():
@@ -55,13 +54,6 @@ def has_target(name):
     return re.search(rf"\b{name}\b", helped.stdout) is not None
 
 
-def needed_by(file):
-    """Returns the libraries that a file is linked with, by name, without those of every system."""
-    found = subprocess.run(["ldd", str(file)], check=True, stdout=subprocess.PIPE, text=True).stdout
-    libraries = dict(re.findall(r"^\s*(\S+) => (/\S+)", found, re.M))
-    return {name: path for name, path in libraries.items() if not OF_THE_SYSTEM.match(name)}
-
-
 def bundle(folder):
     """Fills tessera/lib, and returns the files of the libraries that it copied.
 
@@ -70,40 +62,7 @@ def bundle(folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     files = [pathlib.Path(shutil.copy(file, folder)) for file in built()]
-    libraries = {name: path for file in files for name, path in needed_by(file).items()}
-    names = {name: name.replace(".so", "-tessera.so", 1) for name in libraries}
-    files += [pathlib.Path(shutil.copy(path, folder / names[name])) for name, path in libraries.items()]
-    for file in files:
-        file.chmod(0o755)
-        subprocess.run(["strip", "--strip-unneeded", str(file)], check=True)
-        print_needed = ["patchelf", "--print-needed", str(file)]
-        needed = subprocess.run(print_needed, check=True, stdout=subprocess.PIPE, text=True).stdout.split()
-        # patchelf 0.14 mixes up the names of several kinds of changes in one call.
-        changes = [part for name in needed if name in names for part in ("--replace-needed", name, names[name])]
-        soname = ["--set-soname", file.name] if file.name in names.values() else []
-        for change in filter(None, (changes, soname, ["--set-rpath", "$ORIGIN"])):
-            subprocess.run(["patchelf", *change, str(file)], check=True)
-    return sorted(os.path.realpath(path) for path in libraries.values())
-
-
-def write_licences(folder, libraries):
-    """Writes what Debian's packages say about the licences of libraries, and the texts that they refer to."""
-    folder.mkdir(exist_ok=True)
-    shutil.copy(SOURCES / "LICENSE", folder / "tessera.txt")
-    if shutil.which("dpkg-query") is None:
-        message = "setup.py: this is not Debian: of the licences the wheel holds Tessera's alone; do not pass it on"
-        print(message, file=sys.stderr)
-        return
-    owned = subprocess.run(["dpkg-query", "-S", *libraries], check=True, stdout=subprocess.PIPE, text=True).stdout
-    packages = sorted({line.split(":")[0] for line in owned.splitlines()} | HEADERS)
-    for package in packages:
-        text = pathlib.Path("/usr/share/doc", package, "copyright").read_text(encoding="utf-8")
-        (folder / f"{package}.txt").write_text(text, encoding="utf-8")
-        for name in re.findall(r"/usr/share/common-licenses/([\w.-]*\w)", text):
-            shutil.copy(pathlib.Path("/usr/share/common-licenses", name), folder)
-    query = ["dpkg-query", "-W", "-f", "${source:Package} ${source:Version} (${Package})\n", *packages]
-    sources = subprocess.run(query, check=True, stdout=subprocess.PIPE, text=True).stdout
-    (folder / "SOURCES.txt").write_text(f"Sources of the libraries, at https://snapshot.debian.org:\n\n{sources}")
+    return copy_libraries(files, folder, lambda name: name.replace(".so", "-tessera.so", 1))
 
 
 class BuildWithLibrary(build_py):
@@ -132,7 +91,6 @@ class DistributionOfOnePlatform(Distribution):
         return True
 
 
-# Nothing is written among the sources.
 WRITTEN = BUILD / "wheel"
 WRITTEN.mkdir(parents=True, exist_ok=True)
 setup(
