@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tess/far_parts.h"
+#include "tessera/tessellate.h"
 
 namespace tessera::test { namespace {
 

@@ -8,7 +8,7 @@
 #include "support/synthetic_sets.h"
 #include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
-#include "tessera/tessellation.h"
+#include "tessera/tessellate.h"
 #include "tessera/topology.h"
 
 namespace tessera { namespace {

@@ -385,16 +385,6 @@ class Tessellation {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Makes a set's mesh in one call, with all attributes, as Tessellation::make(), allocate() and run() do. Who needs the
-/// bound, or edits the set, makes a Tessellation.
-///
-/// Errors: those of these three; invalid_argument (patches_beyond_tolerance() or crossed_patches(): a tolerance that the
-/// mesh would not keep; index = the first such patch).
-Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options, const Execution& execution = {});
-/// Makes a model's mesh in one call, from make_patch_set(), with parts_by_surface(). Errors: as above, and those of
-/// these two.
-Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, const Execution& execution = {});
-
 /// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
 ///
 /// - `set`: the set that mesh.patches refers to, made of `model`.

@@ -32,6 +32,7 @@
 #include "tessera/strided_view.h"
 #include "tessera/surface.h"
 #include "tessera/tensor_patch.h"
+#include "tessera/tessellate.h"
 #include "tessera/tessellation.h"
 #include "tessera/throw.h"
 #include "tessera/topology.h"

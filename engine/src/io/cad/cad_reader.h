@@ -44,7 +44,7 @@ enum CadReaderExit { cad_reader_done = 0, cad_reader_misused = 64, cad_reader_fa
 
 /// Finds the reader: `named`, or the environment's, or the first that lies beside this program or library, in a
 /// libexec folder or on PATH. Errors: unsupported (there is none).
-Result<std::string> find_cad_reader(const std::filesystem::path& named, std::string_view format);
+Result<std::string> reader_for(const std::filesystem::path& named, std::string_view format);
 
 struct CadReaderRun {
   std::string reader;  ///< the program

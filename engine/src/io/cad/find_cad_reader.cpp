@@ -61,7 +61,7 @@ std::string on_path() {
 
 }  // namespace
 
-Result<std::string> find_cad_reader(const fs::path& named, std::string_view format) {
+Result<std::string> reader_for(const fs::path& named, std::string_view format) {
   if (!named.empty()) return named.string();
   if (const char* const other = std::getenv("TESSERA_CAD_READER"); other && *other) return std::string(other);
   for (const fs::path& place : usual_places()) {
@@ -79,7 +79,7 @@ Result<std::string> find_cad_reader(const fs::path& named, std::string_view form
 
 Result<fs::path> find_cad_reader(const CadOptions& options) {
   return guarded([&]() -> Result<fs::path> {
-    const Result<std::string> found = find_cad_reader(options.reader, "CAD");
+    const Result<std::string> found = reader_for(options.reader, "CAD");
     if (!found) return found.status();
     return fs::path(*found);
   });

@@ -60,7 +60,7 @@ Result<Model> read(const fs::path& path, const CadOptions& options) {
                                                "\": CAD files are read as " + listed_cad_extensions().substr(2));
   const Result<std::uintmax_t> size = readable_size(path);
   if (!size) return size.status();
-  const Result<std::string> reader = find_cad_reader(options.reader, format);
+  const Result<std::string> reader = reader_for(options.reader, format);
   if (!reader) return Status(reader.status().code(), path.string() + ": " + reader.status().message());
   Result<Model> model = run_cad_reader({*reader, format, path.string(), *size, options.cancel});
   if (model) model->name = path.stem().string();

@@ -1,14 +1,9 @@
-// Meshes in one call.
+#include "tessera/tessellate.h"
 
 #include <span>
 #include <string>
 
 #include "base/text.h"
-#include "tessera/guard.h"
-#include "tessera/mesh.h"
-#include "tessera/model.h"
-#include "tessera/patch_set.h"
-#include "tessera/tessellation.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

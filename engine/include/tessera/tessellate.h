@@ -1,0 +1,27 @@
+#pragma once
+// A mesh in one call.
+//
+// Threads: any number of calls at once; work runs in the caller's TBB arena.
+
+#include "tessera/execution.h"
+#include "tessera/mesh.h"
+#include "tessera/model.h"
+#include "tessera/patch_set.h"
+#include "tessera/status.h"
+#include "tessera/tessellation.h"
+
+#pragma GCC visibility push(default)
+namespace tessera { inline namespace abi_0_1 {
+
+/// Makes a set's mesh in one call, with all attributes, as Tessellation::make(), allocate() and run() do. Who needs the
+/// bound, or edits the set, makes a Tessellation.
+///
+/// Errors: those of these three; invalid_argument (patches_beyond_tolerance() or crossed_patches(): a tolerance that the
+/// mesh would not keep; index = the first such patch).
+Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options, const Execution& execution = {});
+/// Makes a model's mesh in one call, from make_patch_set(), with parts_by_surface(). Errors: as above, and those of
+/// these two.
+Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, const Execution& execution = {});
+
+}}  // namespace tessera::abi_0_1
+#pragma GCC visibility pop
