@@ -82,9 +82,8 @@ struct TessellationOptions {
   /// The largest distance of borders that are joined: 0 to a twentieth of the set's size. 0 joins only borders of the
   /// same bits. Borders shorter than it become points.
   ///
-  /// Empty: an eighth of the tolerance; without a tolerance, 1e-6 of the set's size. Borders are then joined only if an
-  /// eighth of either's size is no less than their distance, and become points only if they are no longer than 2^-18 of
-  /// their patch.
+  /// Empty: an eighth of the tolerance, without a tolerance 1e-6 of the set's size; but no more than an eighth of the
+  /// smaller border's size. Borders then become points only if they are no longer than 2^-18 of their patch.
   std::optional<double> weld = {};
   /// The largest angle between normals that are joined, radians, 0 to pi. If empty, each patch has its own normals.
   ///
