@@ -226,9 +226,9 @@ if(WAY STREQUAL "package")
   endif()
 elseif(WAY STREQUAL "subdirectory")
   # No build type: Tessera must not choose one for a project that left it open. It also compiles fastest: most of the
-  # time is that of the kernels, which it optimises no more than necessary. Each file is compiled alone, which shows that
-  # it includes what it needs; presets compile whole folders.
-  set(options -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE= -D TESSERA_INSTALL=ON -D TESSERA_KERNEL_LEVEL=-O1)
+  # time is that of the kernels, which it optimises no more than necessary.
+  set(options -D TESSERA_SOURCE=${SOURCE} -D CMAKE_BUILD_TYPE= -D TESSERA_INSTALL=ON -D TESSERA_KERNEL_LEVEL=-O1
+    -D CMAKE_UNITY_BUILD=ON)
   set(TARGETS ${programs})
   build_consumer(subdirectory ${options} -D BUILD_SHARED_LIBS=ON)
   run_programs(subdirectory shared)

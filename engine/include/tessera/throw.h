@@ -14,6 +14,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// A Status that is an error, as an exception; what() is its message.
 class StatusError : public std::runtime_error {
  public:
+  /// Takes an error.
   explicit StatusError(Status status) : std::runtime_error(status.message()), status_(std::move(status)) {}
   const Status& status() const { return status_; }  ///< the code and the index as well
 
