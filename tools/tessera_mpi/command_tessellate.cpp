@@ -95,7 +95,8 @@ Status write_vtp(const PartMesh& own, const PartSums& sums, const MeshTotals& to
   Status written = transport.agree(piece);
   if (written.ok())
     written = transport.agree(team.leads() ? write_pvtp(totals, index, transport.part_count()) : Status());
-  if (!written.ok() && piece.ok()) std::filesystem::remove(vtp_piece_path(index, transport.part()));
+  std::error_code ignored;
+  if (!written.ok() && piece.ok()) std::filesystem::remove(vtp_piece_path(index, transport.part()), ignored);
   return written;
 }
 
