@@ -80,7 +80,8 @@ struct CadOptions {
 ///
 /// Threads: any. Signals and other children of the process are left alone.
 Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& options = {});
-/// Returns the program that read_cad() starts with these options. Errors: unsupported (there is none). Threads: any.
+/// Returns the program that read_cad() starts with these options; one that is named need not exist. Errors: unsupported
+/// (none is named or found). Threads: any.
 Result<std::filesystem::path> find_cad_reader(const CadOptions& options = {});
 /// Whether read_cad() knows the extension.
 bool is_cad_file(const std::filesystem::path& path);

@@ -13,8 +13,8 @@
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
 
-/// Makes a set's mesh in one call, with all attributes, as Tessellation::make(), allocate() and run() do. Who needs the
-/// bound, or edits the set, makes a Tessellation.
+/// Makes a set's mesh in one call, with all attributes, as Tessellation::make(), allocate() and run() do. Make a
+/// Tessellation to edit the set, or to learn the bound, whether it is proven (certified()), and gap().
 ///
 /// Errors: those of these three; invalid_argument (patches_beyond_tolerance() or crossed_patches(): a tolerance that the
 /// mesh would not keep; index = the first such patch).
