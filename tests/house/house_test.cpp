@@ -110,9 +110,9 @@ std::vector<std::string> type_names(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) {
     std::smatch found;
-    const bool opens_one = line.starts_with("namespace");
-    for (std::sregex_iterator at(line.begin(), line.end(), opens); opens_one && at != std::sregex_iterator(); ++at)
-      spaces.push_back((*at)[1]);
+    if (line.starts_with("namespace"))
+      for (std::sregex_iterator at(line.begin(), line.end(), opens); at != std::sregex_iterator(); ++at)
+        spaces.push_back((*at)[1]);
     if (std::regex_match(line, found, closes))
       spaces.resize(spaces.size() - std::min(spaces.size(), static_cast<std::size_t>(found[1].length())));
     if (!std::regex_match(line, found, defines) || std::ranges::find(spaces, "") != spaces.end()) continue;
