@@ -43,7 +43,7 @@ inline CadReaderLimits cad_reader_limits(std::uint64_t file_bytes) {
 enum CadReaderExit { cad_reader_done = 0, cad_reader_misused = 64, cad_reader_failed = 70, cad_reader_out_of_memory };
 
 /// Finds the reader: `named`, or the environment's, or the first that lies beside this program or library, in a
-/// libexec folder or on PATH. `format`: what it is wanted for, in an error's words. Errors: unsupported (there is none).
+/// libexec folder or on PATH. `format`: for an error's words. Errors: unsupported (there is none).
 Result<std::string> reader_for(const std::filesystem::path& named, std::string_view format);
 
 struct CadReaderRun {
