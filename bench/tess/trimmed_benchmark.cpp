@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "plane/cut_cells.h"
 #include "suite.h"
-#include "tess/trimmed/cut_cells.h"
 #include "timing.h"
 
 namespace tessera::bench { namespace {

@@ -11,7 +11,7 @@ import sys
 
 FILES = ['include/tessera/status.h', 'include/tessera/patch_set.h', 'include/tessera/tessellation.h',
          'include/tessera/ray_scene.h', 'include/tessera/evaluate.h', 'include/tessera/bezier_patch.h', 'src/tess/plan/certified_plan.h',
-         'src/tess/closing/edge_runs.h', 'src/block/box_tree.h', 'src/trim/curve_extractions.h']
+         'src/tess/closing/edge_runs.h', 'src/model/box_tree.h', 'src/trim/curve_extractions.h']
 TYPE = re.compile(r'^(?:class|struct|enum class)(?: \[\[\w+\]\])? (\w+)\b[^;{]*\{', re.M)
 
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "block/unjoined_faces.h"
+#include "join/unjoined_faces.h"
 #include "ray/batch_support.h"
 #include "tess_trim/closed_shape.h"
 #include "tess_trim/trimmed_face.h"

@@ -52,7 +52,7 @@ class [[gnu::visibility("hidden")]] MeetingBorders {
       for (std::size_t patch = 0; patch < set.patch_count(); ++patch)
         for (std::size_t side = 0; side < 4; ++side) {
           const std::uint32_t edge = edges.edge(patch, all_sides[side]);
-          if (edge != SharedEdges::none && !planner->shapes()[patch].is_curve) visit(4 * patch + side, edge);
+          if (edge != no_id && !planner->shapes()[patch].is_curve) visit(4 * patch + side, edge);
         }
     };
     for_borders([&](std::size_t, std::uint32_t edge) { ++borders[edge]; });

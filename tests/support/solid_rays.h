@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "block/coedge_parameter.h"
-#include "block/face_points.h"
+#include "model/coedge_parameter.h"
+#include "model/face_points.h"
 #include "support/ray_classes.h"
 #include "tessera/model.h"
 #include "tessera/ray_scene.h"

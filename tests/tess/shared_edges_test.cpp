@@ -38,7 +38,7 @@ void expect_edges_by_bits(const PatchSet& set, const char* what) {
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges.edge(patch, side);
       if (impl_of(set).collapsed[patch].has(edge_of(side))) {
-        EXPECT_EQ(edge, SharedEdges::none);
+        EXPECT_EQ(edge, no_id);
         continue;
       }
       ASSERT_LT(edge, edges.count()) << what;

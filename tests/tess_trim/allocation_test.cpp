@@ -1,8 +1,8 @@
 // Triangulation allocates nothing on repetition.
 
+#include "plane/cut_cells.h"
+#include "plane/plane_reference.h"
 #include "support/allocations.h"
-#include "tess/trimmed/cut_cells.h"
-#include "tess_trim/plane_reference.h"
 
 namespace tessera::test { namespace {
 
@@ -14,7 +14,7 @@ TEST(TrimmedAllocation, NoneOnRepetition) {
   std::mt19937 random(1);
   for (int k = 0; k < 16; ++k)
     add_star(points, ends, random, {2500.0 + 5000 * (k % 4), 2500.0 + 5000 * (k / 4)}, 1500, 2400, 50);
-  const Segments chords = segments_of(ends);
+  const PlaneSegments chords = segments_of(ends);
   PolygonTriangles polygons;
   CutCells cells;
   ASSERT_TRUE(polygons.run_rings(points, ends));

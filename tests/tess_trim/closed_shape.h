@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "block/unjoined_faces.h"
+#include "join/unjoined_faces.h"
 #include "tessera/model.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/tessellation.h"

@@ -4,9 +4,9 @@
 #include <functional>
 #include <numbers>
 
+#include "plane/plane_reference.h"
 #include "support/triangle_distance.h"
 #include "tess/proven_mesh_of.h"
-#include "tess_trim/plane_reference.h"
 #include "tess_trim/trimmed_face.h"
 #include "trim/trim_shapes.h"
 

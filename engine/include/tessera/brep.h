@@ -15,9 +15,6 @@
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
 
-/// An id of nothing.
-inline constexpr std::uint32_t no_id = 0xffffffff;
-
 /// How one curve of a loop uses an edge. A seam has two coedges in one face, each with its own curve.
 struct Coedge {
   std::uint32_t edge = no_id;  ///< index into Shape::edges

@@ -10,6 +10,9 @@
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
 
+/// An id or an index of nothing.
+inline constexpr std::uint32_t no_id = 0xffffffff;
+
 /// A point or a vector. Lengths are in the model's own unit.
 struct Vec3 {
   double x = 0, y = 0, z = 0;  ///< in the model's unit

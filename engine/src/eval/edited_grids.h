@@ -100,7 +100,7 @@ class EditedGrids {
     block_ = block;
     const std::uint32_t* edits = call_.touched.edits(block);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (edits[lane] == TouchedBlocks::none) continue;
+      if (edits[lane] == no_id) continue;
       const std::uint32_t patch = call_.set.lane_patches[block * lanes + lane];
       gather(group, lane);
       patches_[gathered_++] = patch;

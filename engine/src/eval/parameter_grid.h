@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "eval/view_checks.h"
+#include "eval/grid_checks.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 

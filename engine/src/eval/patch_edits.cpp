@@ -87,7 +87,7 @@ void pack_edits(PatchSet::Impl& set, const PatchEdits& edits, const TouchedBlock
     return;
   }
   for (std::size_t lane = 0; lane < used; ++lane) {
-    if (of_lane[lane] == TouchedBlocks::none) continue;
+    if (of_lane[lane] == no_id) continue;
     PatchPieces::overwrite(set.patches[patches[lane]], points(lane));
     (void)set.pack_lanes(patches[lane]);
   }

@@ -10,9 +10,9 @@
 #include <type_traits>
 
 #include "base/text.h"
+#include "eval/grid_checks.h"
 #include "eval/point_chunk.h"
 #include "eval/surface_map_impl.h"
-#include "eval/view_checks.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

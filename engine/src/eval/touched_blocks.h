@@ -22,10 +22,8 @@ inline Status edit_error(StatusCode code, std::size_t edit, const std::string& w
 /// The edits of one call, block by block. Holds memory for all patches of a set, so that no call allocates.
 class TouchedBlocks {
  public:
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
   explicit TouchedBlocks(const PatchSet::Impl& set)
-      : edits_(set.lane_patches.size(), none), counts_(set.lane_counts.size(), 0) {
+      : edits_(set.lane_patches.size(), no_id), counts_(set.lane_counts.size(), 0) {
     blocks_.reserve(counts_.size());
     first_points_.reserve(set.patches.size());
   }
@@ -43,7 +41,7 @@ class TouchedBlocks {
             "there is no patch " + std::to_string(patch) + " in a set of " + std::to_string(set.patches.size())));
       const PatchSet::Slot slot = set.slots[patch];
       std::uint32_t& edit = edits_[slot.block * lanes + slot.lane];
-      if (edit != none)
+      if (edit != no_id)
         return cleared(edit_error(StatusCode::invalid_argument, k,
                                   "patch " + std::to_string(patch) + " has edit " + std::to_string(edit) + " already"));
       edit = static_cast<std::uint32_t>(k);
@@ -59,7 +57,7 @@ class TouchedBlocks {
 
   void clear() {
     for (const std::uint32_t block : blocks_) {
-      std::fill_n(edits_.begin() + static_cast<std::ptrdiff_t>(block * lanes), lanes, none);
+      std::fill_n(edits_.begin() + static_cast<std::ptrdiff_t>(block * lanes), lanes, no_id);
       counts_[block] = 0;
     }
     blocks_.clear();

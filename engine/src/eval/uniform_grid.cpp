@@ -168,7 +168,7 @@ Status UniformGrid::update(PatchSet::Impl& set, const PatchEdits& edits, const T
     for (std::size_t k = begin; k < end; ++k) {
       std::uint32_t wanted = 0;
       for (std::size_t lane = 0; lane < PatchSet::lanes; ++lane)
-        if (touched.edits(blocks[k])[lane] != TouchedBlocks::none) wanted |= 1u << lane;
+        if (touched.edits(blocks[k])[lane] != no_id) wanted |= 1u << lane;
       borders.run(blocks[k], wanted);
     }
   };

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "block/box_tree.h"
+#include "model/box_tree.h"
 #include "parts/packed_message.h"
 #include "tessera/guard.h"
 #include "tessera/part_mesh.h"

@@ -266,7 +266,7 @@ class LoopBuilder {
               std::max(from.v, target.v));
     const bool was_odd = is_odd_copy_.back();  // `from` lies in that copy
     const std::size_t begin = is_odd_copy_.size();
-    append({{from, target}, {}}, {}, TrimPiece::none, {0, 1});
+    append({{from, target}, {}}, {}, no_id, {0, 1});
     for (std::size_t k = begin; k < is_odd_copy_.size(); ++k) is_odd_copy_[k] = is_odd_copy_[k] != was_odd;
     if (!wraps) return;
     TrimPiece& last = made_.pieces.back();

@@ -14,17 +14,15 @@ namespace tessera { inline namespace abi_0_1 {
 /// crosses no line between patches, but may end on one or run along one. Its ends are the same bits as those of its
 /// neighbours in the loop; an end on a line between patches has that line's own number.
 struct TrimPiece {
-  static constexpr std::uint32_t none = 0xFFFFFFFF;
-
   PlaneBezier curve;
   /// A straight piece without error lies on the line through these two points, which are those of the caller: cutting
   /// rounds the piece's own ends. Otherwise they are not used.
   ParameterPoint line_from = {}, line_to = {};
   bool exact_line = false;
-  ParameterPoint error = {};         ///< the largest distance from the caller's curve in u, and in v
-  std::uint32_t loop = none;         ///< index into the loops; none for the sides of the domain
-  std::uint32_t curve_index = none;  ///< index into TrimLoop::curves; none for lines that close a gap
-  Interval range = {};               ///< the parameters of the caller's curve
+  ParameterPoint error = {};          ///< the largest distance from the caller's curve in u, and in v
+  std::uint32_t loop = no_id;         ///< index into the loops; none for the sides of the domain
+  std::uint32_t curve_index = no_id;  ///< index into TrimLoop::curves; none for lines that close a gap
+  Interval range = {};                ///< the parameters of the caller's curve
 
   const ParameterPoint& start() const { return curve.points.front(); }
   const ParameterPoint& end() const { return curve.points.back(); }

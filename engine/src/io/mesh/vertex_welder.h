@@ -12,12 +12,11 @@ namespace tessera { inline namespace abi_0_1 {
 class VertexWelder {
  public:
   /// New positions are appended to `positions`: three floats per vertex, at most 2^32 - 1 vertices.
-  explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(min_size, none) {}
+  explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(min_size, no_id) {}
 
   std::uint32_t index_of(const std::array<float, 3>& position);
 
  private:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
   static constexpr std::size_t min_size = 64;  // a power of two, like all sizes
 
   std::size_t slot_of(const std::array<float, 3>& position) const;

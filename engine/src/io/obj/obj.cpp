@@ -37,7 +37,6 @@ void write_corner(OutputFile& out, std::uint64_t index, bool parameters, bool no
 }
 
 /// Stands for "no such index" in a corner.
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 /// Position, parameter and normal of one corner of a polygon, zero-based.
 using Corner = std::array<std::uint32_t, 3>;
@@ -77,7 +76,7 @@ class ObjReader {
       if (!cursor_.take_line_end()) return cursor_.expected("the end of the line");
     }
     if (mesh_.positions.empty()) return cursor_.expected("vertices (v x y z)");
-    if (mesh_.vertex_count() >= none)
+    if (mesh_.vertex_count() >= no_id)
       return cursor_.failure("there are more vertices than 32-bit indices can tell apart");
     if (!one_normal_a_vertex_ || mesh_.normals.size() != mesh_.positions.size()) mesh_.normals.clear();
     if (!one_parameter_a_vertex_ || mesh_.parameters.size() / 2 != mesh_.vertex_count()) mesh_.parameters.clear();
@@ -138,7 +137,7 @@ class ObjReader {
     const std::array<std::size_t, 3> counts{mesh_.positions.size() / 3, mesh_.parameters.size() / 2,
                                             mesh_.normals.size() / 3};
     constexpr std::array<std::string_view, 3> kinds{"vertices", "vt lines", "vn lines"};
-    corner = {none, none, none};
+    corner = {no_id, no_id, no_id};
     for (std::size_t k = 0; k < 3; ++k) {
       if (k > 0 && !cursor_.take('/')) break;
       if (k == 1 && !cursor_.at_end() && *cursor_.position() == '/') continue;  // the form a//c

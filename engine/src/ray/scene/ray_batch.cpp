@@ -7,7 +7,7 @@
 #include "base/impl_access.h"
 #include "base/infinity.h"
 #include "base/text.h"
-#include "eval/view_checks.h"
+#include "eval/grid_checks.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"

@@ -17,11 +17,10 @@ inline constexpr std::array<Edge, 4> all_edges{Edge::u0, Edge::u1, Edge::v0, Edg
 
 /// The other side of an edge.
 struct EdgeLink {
-  static constexpr std::uint32_t no_patch = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t patch = no_patch;
+  std::uint32_t patch = no_id;
   std::uint8_t edge = 0;  ///< index into all_edges
   bool reversed = false;  ///< the two run along the edge in opposite directions
-  bool exists() const { return patch != no_patch; }
+  bool exists() const { return patch != no_id; }
 };
 
 /// Links two edges if they, and no third one, have the same control points and weights (by ==), in either order.

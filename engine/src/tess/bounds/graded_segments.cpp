@@ -9,22 +9,22 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr int parts = Segments::parts, half_parts = parts / 2;
+constexpr int eighths = Segments::parts, half_eighths = eighths / 2;
 constexpr std::size_t index(int k) { return static_cast<std::size_t>(k); }
 
 /// With fewer cells nothing is saved that is worth the time.
-constexpr double min_cells = 6;
+constexpr double min_graded_cells = 6;
 /// The least share of the cells to save.
 constexpr double min_grading_saving = 0.03;
 constexpr int rounds = 2;
 
 /// The rates in the eighths of a parameter, as real numbers.
-using PieceRates = std::array<float, parts>;
+using PieceRates = std::array<float, eighths>;
 
 float mean(const PieceRates& rates) {
   float sum = 0;
   for (const float rate : rates) sum += rate;
-  return sum / parts;
+  return sum / eighths;
 }
 
 /// The rates of both parameters.
@@ -39,8 +39,8 @@ class Needs {
   explicit Needs(const CellLimits& limits) : limits_(limits) {
     if (!limits.turning) return;
     const auto scale = static_cast<float>((1 + 0x1p-18) / limits.turning->without_rounding(limits.angle));
-    for (int i = 0; i < parts; ++i)
-      for (int j = 0; j < parts; ++j) {
+    for (int i = 0; i < eighths; ++i)
+      for (int j = 0; j < eighths; ++j) {
         u_by_v_[index(j)][index(i)] = u_by_u_[index(i)][index(j)] = scale * limits.turning->u(i, j);
         v_by_v_[index(j)][index(i)] = v_by_u_[index(i)][index(j)] = scale * limits.turning->v(i, j);
       }
@@ -55,12 +55,12 @@ class Needs {
     PieceRates rates;
     rates.fill(least_rate);
     for (const auto& row : v_by_u_)
-      for (std::size_t j = 0; j < parts; ++j) rates[j] = std::max(rates[j], row[j] / share);
+      for (std::size_t j = 0; j < eighths; ++j) rates[j] = std::max(rates[j], row[j] / share);
     const auto add = [&](const ChordBound* bound, double limit) {
       for (std::size_t quarter = 0; bound && quarter < 4; ++quarter) {
         const auto rate = static_cast<float>(std::sqrt(bound->pieces()[5 + quarter].vv / (8 * limit * share)));
-        for (std::size_t j = 0; j < half_parts; ++j)
-          rates[quarter % 2 * half_parts + j] = std::max(rates[quarter % 2 * half_parts + j], rate);
+        for (std::size_t j = 0; j < half_eighths; ++j)
+          rates[quarter % 2 * half_eighths + j] = std::max(rates[quarter % 2 * half_eighths + j], rate);
       }
     };
     add(limits_.chord, limits_.distance);
@@ -69,7 +69,7 @@ class Needs {
   }
 
  private:
-  using Table = std::array<std::array<float, parts>, parts>;
+  using Table = std::array<std::array<float, eighths>, eighths>;
   static constexpr float least_rate = 0.125f, least_room = 1e-4f;
 
   /// `wanted[k]` and `other[k]`: the turning over the angle, along the parameter whose rates are wanted and along the
@@ -77,9 +77,9 @@ class Needs {
   static PieceRates by_turning(const Table& wanted, const Table& other, const PieceRates& rates) {
     PieceRates needed;
     needed.fill(least_rate);
-    for (std::size_t k = 0; k < parts; ++k) {
+    for (std::size_t k = 0; k < eighths; ++k) {
       const float step = 1 / rates[k];
-      for (std::size_t e = 0; e < parts; ++e) {
+      for (std::size_t e = 0; e < eighths; ++e) {
         const float room = 1 - step * other[k][e], rate = wanted[k][e] / (room > least_room ? room : least_room);
         needed[e] = rate > needed[e] ? rate : needed[e];
       }
@@ -91,7 +91,7 @@ class Needs {
     if (!is_for_halves()) return needed;
     for (int half = 0; half < 2; ++half) {
       const double fixed =
-          *std::min_element(other.begin() + half * half_parts, other.begin() + (half + 1) * half_parts);
+          *std::min_element(other.begin() + half * half_eighths, other.begin() + (half + 1) * half_eighths);
       for (int wanted = 0; wanted < 2; ++wanted) {
         const int quarter = other_is_u ? 2 * half + wanted : 2 * wanted + half;
         double rate = least_rate;
@@ -100,7 +100,7 @@ class Needs {
         if (limits_.picture)
           rate = std::max(rate, limits_.picture->needed_in_quarter(limits_.pixels, fixed, other_is_u, quarter));
         const auto least = static_cast<float>(std::min(rate * (1 + 0x1p-20 + 0x1p-23 * rate), 1e6));
-        for (int e = wanted * half_parts; e < (wanted + 1) * half_parts; ++e)
+        for (int e = wanted * half_eighths; e < (wanted + 1) * half_eighths; ++e)
           needed[index(e)] = std::max(needed[index(e)], least);
       }
     }
@@ -138,14 +138,14 @@ PieceRates rounded(PieceRates rates, bool by_halves, bool up) {
   const auto round = [&](std::size_t begin, std::size_t end) {
     float sum = 0;
     for (std::size_t e = begin; e < end; ++e) sum += rates[e];
-    const float count = sum / parts, whole = std::max(1.0f, up ? std::ceil(count) : std::floor(count));
+    const float count = sum / eighths, whole = std::max(1.0f, up ? std::ceil(count) : std::floor(count));
     for (std::size_t e = begin; e < end; ++e) rates[e] *= whole / count;
   };
   if (by_halves) {
-    round(0, half_parts);
-    round(half_parts, parts);
+    round(0, half_eighths);
+    round(half_eighths, eighths);
   } else {
-    round(0, parts);
+    round(0, eighths);
   }
   return rates;
 }
@@ -153,14 +153,14 @@ PieceRates rounded(PieceRates rates, bool by_halves, bool up) {
 /// The number of segments that rates take.
 float count(const PieceRates& rates, bool by_halves) {
   float sum[2] = {0, 0};
-  for (std::size_t e = 0; e < parts; ++e) sum[by_halves && e >= half_parts] += rates[e] / parts;
+  for (std::size_t e = 0; e < eighths; ++e) sum[by_halves && e >= half_eighths] += rates[e] / eighths;
   return std::ceil(sum[0]) + std::ceil(sum[1]);
 }
 
 Segments segments_of(const PieceRates& rates, bool by_halves) {
   RateNeeds needs;
   constexpr int unit = 64;
-  for (std::size_t e = 0; e < parts; ++e)
+  for (std::size_t e = 0; e < eighths; ++e)
     needs[e] = {std::max(1, static_cast<int>(std::ceil(std::min(rates[e], float(max_rate)) * unit))), unit};
   return segments_for(needs, by_halves);
 }
@@ -168,14 +168,14 @@ Segments segments_of(const PieceRates& rates, bool by_halves) {
 /// Whether no rate is above that of uniform segments, so that finer segments of any kind have places of their own.
 bool are_in_range(PatchSegments segments) {
   for (const Segments along : {segments.u, segments.v})
-    for (int e = 0; e < parts; ++e)
+    for (int e = 0; e < eighths; ++e)
       if (Segments::Fraction{max_rate, 1} < along.rate_in(e)) return false;
   return true;
 }
 
 PieceRates rates_of(Segments segments) {
   PieceRates rates;
-  for (int e = 0; e < parts; ++e) rates[index(e)] = static_cast<float>(segments.rate_in(e).value());
+  for (int e = 0; e < eighths; ++e) rates[index(e)] = static_cast<float>(segments.rate_in(e).value());
   return rates;
 }
 
@@ -183,7 +183,7 @@ PieceRates rates_of(Segments segments) {
 
 std::optional<PatchSegments> graded_segments(const CellLimits& limits, Rates uniform) {
   const double most = (1 - min_grading_saving) * uniform.u * uniform.v;
-  if (double(uniform.u) * uniform.v < min_cells) return {};
+  if (double(uniform.u) * uniform.v < min_graded_cells) return {};
   if (!limits.is_for_halves() && limits.turning->is_even()) return {};
   const Needs needs(limits);
   const bool by_halves = needs.is_for_halves();

@@ -46,16 +46,15 @@ struct Welded {
 /// Numbers the distinct positions, by a hash table with open addressing of the first vertex at each.
 template <class Places>
 Welded weld(const Mesh& mesh, const Places& places) {
-  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   Welded welded;
   welded.place.resize(mesh.vertex_count());
-  std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.vertex_count() + 1), none);
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * mesh.vertex_count() + 1), no_id);
   const std::size_t mask = table.size() - 1;
   for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
     const auto bits = places.bits(k);
     std::size_t slot = hash(bits) & mask;
-    while (table[slot] != none && places.bits(table[slot]) != bits) slot = (slot + 1) & mask;
-    if (table[slot] == none) {
+    while (table[slot] != no_id && places.bits(table[slot]) != bits) slot = (slot + 1) & mask;
+    if (table[slot] == no_id) {
       table[slot] = static_cast<std::uint32_t>(k);
       welded.place[k] = static_cast<std::uint32_t>(welded.count++);
     } else {

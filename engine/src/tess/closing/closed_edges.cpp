@@ -59,8 +59,6 @@ class Closer {
   }
 
  private:
-  static constexpr std::uint32_t none = CutPatch::none;
-
   Status look_at_cancel() const {
     return cancel_ && cancel_->load() ? Status(StatusCode::cancelled, "cancelled by the caller") : Status();
   }
@@ -159,27 +157,27 @@ class Closer {
   /// Makes a point of each line that closes a gap, if both of its ends are one place: its other vertices are there too.
   void join_gaps() {
     if (gaps_.empty()) return;
-    std::vector<std::uint32_t> places(count_, none);  // by vertex of a point: its place
+    std::vector<std::uint32_t> places(count_, no_id);  // by vertex of a point: its place
     for (const EdgePoint& point : points_.points)
       for (std::uint32_t k = 0; k < point.count && !is_open_[point.edge]; ++k)
         places[of_points_[point.first + k]] = sets_->find(of_points_[point.first + k]).member;
     UnionFind lines(count_);
     for (const auto& [a, b] : same_) lines.unite(a, b);
     for (const auto& [a, b] : gaps_) lines.unite(a, b);
-    std::vector<std::uint32_t> ends(count_, none);  // by line: the place of its ends
+    std::vector<std::uint32_t> ends(count_, no_id);  // by line: the place of its ends
     std::vector<std::uint8_t> is_apart(count_, 0);
     for (const auto& gap : gaps_) {
       const std::uint32_t line = lines.find(gap[0]).member;
       for (const std::uint32_t end : gap) {
-        if (places[end] == none) continue;
-        is_apart[line] |= ends[line] != none && ends[line] != places[end];
+        if (places[end] == no_id) continue;
+        is_apart[line] |= ends[line] != no_id && ends[line] != places[end];
         ends[line] = places[end];
       }
     }
     for (const auto& gap : gaps_) {
       const std::uint32_t line = lines.find(gap[0]).member;
       for (const std::uint32_t end : gap)
-        if (ends[line] != none && !is_apart[line]) sets_->unite(end, ends[line]);
+        if (ends[line] != no_id && !is_apart[line]) sets_->unite(end, ends[line]);
     }
   }
 
@@ -198,7 +196,7 @@ class Closer {
       const InsertedVertex& v = inserted[k];
       return std::tuple(v.patch, v.start, v.end, v.at, k);
     });
-    resolved_.assign(inserted.size(), CutPatch::none);
+    resolved_.assign(inserted.size(), no_id);
     std::vector<InsertedVertex> of_patch;
     for (std::size_t begin = 0; begin < order.size();) {
       if (Status status = look_at_cancel(); !status.ok()) return status;
@@ -248,34 +246,34 @@ class Closer {
     // Vertices where no faces meet stay: they may be welded. A place gets the number of its root first.
     std::vector<std::uint32_t>& first = out_.first_members;
     first.assign(1, 0);
-    places_.assign(count_ + set_.edges->vertices.size(), none);
+    places_.assign(count_ + set_.edges->vertices.size(), no_id);
     for (const EdgePoint& point : points_.points) {
       if (is_open_[point.edge] || !runs_.meet(point.edge)) continue;
       std::uint32_t& place = places_[sets_->find(of_points_[point.first]).member];
-      if (place == none) place = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
+      if (place == no_id) place = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
     }
     for (std::uint32_t k = 0; k < count_; ++k) {
-      if (!is_used_[k] || (k >= bases_.back() && resolved_[k - bases_.back()] == none)) continue;
+      if (!is_used_[k] || (k >= bases_.back() && resolved_[k - bases_.back()] == no_id)) continue;
       places_[k] = places_[sets_->find(k).member];
-      if (places_[k] != none) ++first[places_[k] + 1];
+      if (places_[k] != no_id) ++first[places_[k] + 1];
     }
     for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
     out_.members.resize(first.back());
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
     const auto put = [&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
-      if (places_[k] != none) out_.members[next[places_[k]]++] = {patch, vertex};
+      if (places_[k] != no_id) out_.members[next[places_[k]]++] = {patch, vertex};
     };
     for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch)
       for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k) put(k, patch, k - zeros_[patch]);
     const std::span<const InsertedVertex> inserted = segments_.inserted();
     for (std::uint32_t k = 0; k < inserted.size(); ++k)
-      if (resolved_[k] != none) put(bases_.back() + k, inserted[k].patch, resolved_[k]);
+      if (resolved_[k] != no_id) put(bases_.back() + k, inserted[k].patch, resolved_[k]);
   }
 
   void measure() {
     std::vector<Box3> boxes(out_.first_members.size() - 1);
     for (std::uint32_t k = 0; k < count_; ++k)
-      if (const std::uint32_t place = places_[k]; place != none) boxes[place].extend(own_[k]);
+      if (const std::uint32_t place = places_[k]; place != no_id) boxes[place].extend(own_[k]);
     out_.places.reserve(boxes.size());
     for (const Box3& box : boxes) out_.places.push_back(box.centre());
     put_at_vertices(boxes);
@@ -284,7 +282,7 @@ class Closer {
       if (is_open_[point.edge]) continue;
       double gap = 0;
       for (const std::uint32_t vertex : std::span(of_points_).subspan(point.first, point.count))
-        if (places_[vertex] != none) gap = std::max(gap, length(own_[vertex] - out_.places[places_[vertex]]));
+        if (places_[vertex] != no_id) gap = std::max(gap, length(own_[vertex] - out_.places[places_[vertex]]));
       out_.gap = std::max(out_.gap, gap);
       out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
     }
@@ -294,7 +292,7 @@ class Closer {
     out_.closed_segments -= count_open();
     for (std::size_t k = 0; k < gaps_.size(); ++k) {
       const std::uint32_t low = places_[gaps_[k][0]], high = places_[gaps_[k][1]];
-      out_.closed_segments += std::int64_t{low == high && low != none} - !points_.gaps[k].begins();
+      out_.closed_segments += std::int64_t{low == high && low != no_id} - !points_.gaps[k].begins();
     }
   }
 
@@ -305,8 +303,8 @@ class Closer {
     const std::span<const Vec3> vertices = set_.edges->vertices;
     for (std::uint32_t k = 0; k < vertices.size(); ++k) {
       const std::uint32_t member = sets_->find(count_ + k).member;
-      const std::uint32_t place = member < count_ ? places_[member] : none;
-      if (place == none) continue;
+      const std::uint32_t place = member < count_ ? places_[member] : no_id;
+      if (place == no_id) continue;
       const Vec3 at = vertices[k] - set_.origin;
       Box3 box = boxes[place];
       box.extend(at);

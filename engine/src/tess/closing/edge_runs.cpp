@@ -144,7 +144,7 @@ const EdgeRun* EdgeRuns::run_of(std::uint32_t face, std::uint32_t first, std::si
 }
 
 CurveAlongEdge EdgeRuns::curve(std::uint32_t face, const TrimPiece& piece) const {
-  if (piece.loop == TrimPiece::none || piece.curve_index == TrimPiece::none) return {};
+  if (piece.loop == no_id || piece.curve_index == no_id) return {};
   const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
   if (loop.coedges.empty()) return {};
   return {&loop.coedges[piece.curve_index], &loop.curves[piece.curve_index]};
@@ -165,7 +165,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
     run.first = piece++;
     const TrimPiece& at = pieces[run.first];
     const Coedge* const coedge = curve(face, at).coedge;
-    if (!coedge && at.curve_index != TrimPiece::none) continue;
+    if (!coedge && at.curve_index != no_id) continue;
     const Along along = along_of(at, region.lines);
     while (piece < pieces.size() && goes_on(pieces[piece - 1], pieces[piece], along, region.lines)) ++piece;
     run.end = piece;

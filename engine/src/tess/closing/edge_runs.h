@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/internal_export.h"
-#include "block/coedge_parameter.h"
 #include "block/patch_edges.h"
 #include "block/patch_set_impl.h"
+#include "model/coedge_parameter.h"
 #include "tess/cells/patch_side.h"
 #include "trim/trim_piece.h"
 

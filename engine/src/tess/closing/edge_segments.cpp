@@ -42,7 +42,7 @@ void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& s
   if (!cut) return;
   const CurveAlongEdge curve = runs_.curve(run);
   const bool has_neighbours = runs_.edges().faces[run.face].patches.size() > 1;
-  std::uint32_t before = CutPatch::none;  // the vertex where the last chord ends
+  std::uint32_t before = no_id;  // the vertex where the last chord ends
   auto chord = std::ranges::lower_bound(cut->loop_segments, run.first, {}, &CutPatch::LoopSegment::piece);
   for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord) {
     if (has_neighbours && chord->start != before) join_across(run, *cut, chord->start);
@@ -67,7 +67,7 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   join_corner(runs_.edges().faces[run.face], pieces.front().start());
   join_corner(runs_.edges().faces[run.face], pieces.back().end());
   const bool along_u = runs_along_u(run.side);
-  const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != CutPatch::none
+  const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != no_id
                             : divisions_[run.patch].collapsed.has(edge_of(run.side));
   if (is_point) {
     const PatchVertex point{run.patch, side[0].vertex};

@@ -16,9 +16,9 @@ class SideOwners {
  public:
   /// A triangle, and its corner where the side starts.
   struct Side {
-    std::uint32_t triangle = CutPatch::none;
+    std::uint32_t triangle = no_id;
     std::size_t corner = 0;
-    bool exists() const { return triangle != CutPatch::none; }
+    bool exists() const { return triangle != no_id; }
   };
 
   explicit SideOwners(FunctionRef<std::uint32_t(std::uint32_t)> pole) : pole_(pole) {}

@@ -11,18 +11,19 @@ EdgeDirections::EdgeDirections(const PatchSet::Impl& set, const SharedEdges& edg
     : set_(set),
       edges_(edges),
       weld_(weld),
-      weld_at_(4 * all.size(), none),
-      leading_(edges.count(), none),
-      first_welded_(edges.count(), none),
-      next_welded_(weld.borders.size(), none) {
+      weld_at_(4 * all.size(), no_id),
+      leading_(edges.count(), no_id),
+      first_welded_(edges.count(), no_id),
+      next_welded_(weld.borders.size(), no_id) {
   for (std::uint32_t k = 0; k < weld.borders.size(); ++k) {
     const std::uint32_t border = weld.borders[k].to;
     weld_at_[border] = k;
-    if (edge(border) != none) next_welded_[k] = std::exchange(first_welded_[edge(border)], k);
+    if (edge(border) != no_id) next_welded_[k] = std::exchange(first_welded_[edge(border)], k);
   }
   for (const std::span<const PatchShape> shapes : {whole, all})
     for (std::uint32_t border = 0; border < weld_at_.size(); ++border)
-      if (!shapes[border / 4].is_curve && edge(border) != none && !is_welded(border) && leading_[edge(border)] == none)
+      if (!shapes[border / 4].is_curve && edge(border) != no_id && !is_welded(border) &&
+          leading_[edge(border)] == no_id)
         leading_[edge(border)] = border;
 }
 
@@ -32,12 +33,12 @@ bool EdgeDirections::is_same(std::uint32_t border, std::uint32_t other) const {
 }
 
 bool EdgeDirections::runs_against_leading(std::uint32_t border) const {
-  if (edge(border) == none) return false;
+  if (edge(border) == no_id) return false;
   const std::uint32_t lead = leading(edge(border));
-  if (lead == none || border == lead) return false;
+  if (lead == no_id || border == lead) return false;
   if (is_welded(border)) return weld_.borders[weld_at_[border]].reversed;
   if (is_same(border, lead)) return runs_against(set_, border, lead);
-  for (std::uint32_t k = first_welded_[edge(border)]; k != none; k = next_welded_[k]) {
+  for (std::uint32_t k = first_welded_[edge(border)]; k != no_id; k = next_welded_[k]) {
     const VertexCopies::Border& copy = weld_.borders[k];
     if (is_same(border, copy.to)) return runs_against(set_, border, copy.to) != copy.reversed;
   }
@@ -47,9 +48,9 @@ bool EdgeDirections::runs_against_leading(std::uint32_t border) const {
 
 bool EdgeDirections::hold() const {
   for (std::uint32_t border = 0; border < weld_at_.size(); ++border) {
-    if (edge(border) == none || is_welded(border)) continue;
+    if (edge(border) == no_id || is_welded(border)) continue;
     const std::uint32_t lead = leading(edge(border));
-    if (lead != none && lead != border && !is_same(border, lead)) return false;
+    if (lead != no_id && lead != border && !is_same(border, lead)) return false;
   }
   return true;
 }

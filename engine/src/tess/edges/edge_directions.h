@@ -18,15 +18,13 @@ namespace tessera { inline namespace abi_0_1 {
 /// of them with its direction; a border that loops cut is the same bits as the leading one, or as a welded one.
 class EdgeDirections {
  public:
-  static constexpr std::uint32_t none = SharedEdges::none;
-
   /// `whole`: the shapes by which whole patches are divided; others count as curves. `all`: the shapes of all patches.
   EdgeDirections(const PatchSet::Impl& set, const SharedEdges& edges, const VertexCopies& weld,
                  std::span<const PatchShape> whole, std::span<const PatchShape> all);
 
   /// Returns the leading border of an edge; none if only curves have it.
   std::uint32_t leading(std::uint32_t edge) const { return leading_[edge]; }
-  bool is_welded(std::uint32_t border) const { return weld_at_[border] != none; }
+  bool is_welded(std::uint32_t border) const { return weld_at_[border] != no_id; }
   /// Whether a border runs against the leading one of its edge. False for borders of no edge.
   bool runs_against_leading(std::uint32_t border) const;
   /// Whether the borders that are not welded are still the same bits as the leading ones of their edges, in the set as

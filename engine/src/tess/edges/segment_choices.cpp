@@ -26,7 +26,7 @@ class Chooser {
         needs_(edges.count()) {
     const auto for_borders = [&](auto visit) {
       for (std::uint32_t border = 0; border < 4 * shapes.size(); ++border)
-        if (const std::uint32_t edge = edge_of_border(border); edge != SharedEdges::none) visit(border, edge);
+        if (const std::uint32_t edge = edge_of_border(border); edge != no_id) visit(border, edge);
     };
     for_borders([&](std::uint32_t, std::uint32_t edge) { ++first_[edge + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -45,7 +45,7 @@ class Chooser {
 
  private:
   std::uint32_t edge_of_border(std::uint32_t border) const {
-    return shapes_[border / 4].is_curve ? SharedEdges::none : edges_.edge(border / 4, all_sides[border % 4]);
+    return shapes_[border / 4].is_curve ? no_id : edges_.edge(border / 4, all_sides[border % 4]);
   }
   const ProvenSegments& present(std::size_t patch) const { return choices_[patch][chosen_[patch]]; }
 
@@ -100,7 +100,7 @@ class Chooser {
     for (const Side side : all_sides) {
       const auto s = static_cast<std::size_t>(side);
       borders[s] = border_with(patch, side, choice);
-      if (const std::uint32_t edge = edges_.edge(patch, side); edge != SharedEdges::none)
+      if (const std::uint32_t edge = edges_.edge(patch, side); edge != no_id)
         beside += (border_count(edge) - 1) * static_cast<std::size_t>(borders[s].rate());
     }
     return beside + Division::of(shapes_[patch], choice.segments, borders).triangle_count();
@@ -108,7 +108,7 @@ class Chooser {
   /// Returns the segments of a border if its patch takes that choice.
   Segments border_with(std::size_t patch, Side side, const ProvenSegments& choice) const {
     const std::uint32_t edge = edges_.edge(patch, side);
-    if (edge == SharedEdges::none) return along(choice.segments, side);
+    if (edge == no_id) return along(choice.segments, side);
     const std::size_t own = 4 * patch + static_cast<std::size_t>(side);
     Needs needs = needs_[edge];
     if (border_count(edge) > max_looked_at) {

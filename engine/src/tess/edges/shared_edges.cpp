@@ -71,8 +71,6 @@ class BorderTable {
   std::vector<Entry> entries_;
   std::size_t mask_, count_ = 0;
 };
-
-constexpr std::uint32_t none = SharedEdges::none;
 constexpr std::size_t lanes = PatchSet::lanes;
 
 /// Gives each border its edge, block after block.
@@ -86,10 +84,10 @@ class EdgeFinder {
     const std::size_t count = set_.lane_counts[block];
     for (const Side side : all_sides) {
       const auto s = static_cast<std::size_t>(side);
-      met_[s].fill(none);
+      met_[s].fill(no_id);
       if (back_[s] > 0) look_back(group, block, side);
       for (std::size_t lane = 0; lane < count; ++lane)
-        if (met_[s][lane] == none) table_.fetch(hashes[s * lanes + lane]);
+        if (met_[s][lane] == no_id) table_.fetch(hashes[s * lanes + lane]);
     }
     for (std::size_t lane = 0; lane < count; ++lane) {
       const std::size_t patch = patches[lane];
@@ -106,7 +104,7 @@ class EdgeFinder {
   const std::uint32_t* patches_of(std::size_t block) const { return set_.lane_patches.data() + block * lanes; }
 
   void add(std::size_t number, Side side, std::uint32_t hash, std::uint32_t met) {
-    if (met != none && edges_[met] != none) {
+    if (met != no_id && edges_[met] != no_id) {
       edges_[number] = edges_[met];
       return;
     }
@@ -136,7 +134,7 @@ class EdgeFinder {
     bool any = false;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t number = 4 * std::size_t{patches[lane]} + s;
-      numbers[lane] = none;
+      numbers[lane] = no_id;
       if (back > number) continue;
       const PatchSet::Slot slot = set_.slots[(number - back) / 4];
       if (slot.block < group.first_block || slot.block > block || hashes_.of(slot, other_side) != hashes[lane])
@@ -161,7 +159,7 @@ class EdgeFinder {
                               .differing = differing.data()});
       any = false;
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        if (differing[lane] == 0 && met_[s][lane] == none) met_[s][lane] = numbers[lane];
+        if (differing[lane] == 0 && met_[s][lane] == no_id) met_[s][lane] = numbers[lane];
         any |= numbers[lane] != met_[s][lane];
       }
       if (!any) return;
@@ -204,7 +202,8 @@ void BorderHashes::find(const PatchSet::Impl& set, std::size_t block) {
        .hash = hashes_.data() + block * 4 * lanes});
 }
 
-SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes) : edges_(4 * set.patches.size(), none) {
+SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes)
+    : edges_(4 * set.patches.size(), no_id) {
   EdgeFinder finder(set, hashes, edges_);
   for (const BlockGroup& group : set.groups)
     for (std::size_t block = 0; block < group.block_count; ++block) finder.add(group, group.first_block + block);
@@ -213,7 +212,7 @@ SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes) 
 
 void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
   for (std::uint32_t& edge : edges_)
-    if (edge != none) edge = numbers[edge];
+    if (edge != no_id) edge = numbers[edge];
 }
 
 }}  // namespace tessera::abi_0_1

@@ -87,8 +87,6 @@ class BorderHashes {
 /// different edges. Collapsed borders belong to no edge.
 class SharedEdges {
  public:
-  static constexpr std::uint32_t none = 0xffffffff;
-
   SharedEdges() = default;
   /// Finds the edges. They are numbered in the order of their first borders: by blocks, by patches, and by `all_sides`.
   SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes);

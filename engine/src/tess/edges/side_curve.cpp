@@ -90,7 +90,6 @@ bool runs_against(const PatchSet::Impl& set, std::uint32_t border, std::uint32_t
 }
 
 SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edges) {
-  constexpr std::uint32_t none = SharedEdges::none;
   const auto curve = [&](std::uint32_t border) { return SideCurve(set.patches[border / 4], all_sides[border % 4]); };
   struct Place {
     std::uint32_t edge, border;
@@ -99,11 +98,11 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
       return std::tie(edge, middle, border) < std::tie(other.edge, other.middle, other.border);
     }
   };
-  std::vector<std::uint32_t> numbers(4 * set.patches.size(), none);
+  std::vector<std::uint32_t> numbers(4 * set.patches.size(), no_id);
   std::vector<Place> places;
   for (std::uint32_t border = 0; border < numbers.size(); ++border) {
     const std::uint32_t edge = edges.edge(border / 4, all_sides[border % 4]);
-    if (edge == none) continue;
+    if (edge == no_id) continue;
     const SideCurve along = curve(border);
     const double rounding = 0x1p-48 * std::max(max_abs(along.box().lower), max_abs(along.box().upper));
     places.push_back({edge, border,
@@ -116,15 +115,15 @@ SharedEdges parted_by_doubles(const PatchSet::Impl& set, const SharedEdges& edge
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Place& place = places[k];
     if (k == 0 || places[k - 1].edge != place.edge) leaders.clear();
-    std::uint32_t found = none;
-    for (std::size_t n = leaders.size(); n > 0 && found == none; --n) {
+    std::uint32_t found = no_id;
+    for (std::size_t n = leaders.size(); n > 0 && found == no_id; --n) {
       const Place& leader = places[leaders[n - 1]];
       if (place.middle - leader.middle > 2 * place.reach) break;
       const SideCurve a = curve(place.border), b = curve(leader.border);
       if (std::min(distance_bound(a, b, false), distance_bound(a, b, true)) <= place.reach)
         found = numbers[leader.border];
     }
-    if (found == none) {
+    if (found == no_id) {
       found = leaders.empty() ? place.edge : count++;
       leaders.push_back(k);
     }

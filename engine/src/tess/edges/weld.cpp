@@ -46,12 +46,12 @@ class Welder {
         shapes_(shapes),
         rules_(rules),
         edges_(edges),
-        leading_(edges.count(), SharedEdges::none),
+        leading_(edges.count(), no_id),
         has_more_(edges.count(), 0) {
     std::uint32_t* const leading = leading_.data();
     std::uint8_t* const has_more = has_more_.data();
     for_borders([=](std::uint32_t border, std::uint32_t edge) {
-      has_more[edge] = leading[edge] != SharedEdges::none;
+      has_more[edge] = leading[edge] != no_id;
       leading[edge] = std::min(leading[edge], border);
     });
     if (rules.f64_patches.empty()) return;
@@ -95,12 +95,12 @@ class Welder {
     const std::uint32_t* edges = edges_.of_borders().data();
     for (std::uint32_t patch = 0; patch < shapes_.size(); ++patch, edges += 4)
       for (std::uint32_t side = 0; side < 4 && !shapes_[patch].is_curve; ++side)
-        if (edges[side] != SharedEdges::none) visit(4 * patch + side, edges[side]);
+        if (edges[side] != no_id) visit(4 * patch + side, edges[side]);
   }
 
   /// The nearest edge to one with a single border.
   struct Nearest {
-    std::uint32_t edge, other = SharedEdges::none;
+    std::uint32_t edge, other = no_id;
     bool reversed = false;
     double distance = 0;
   };
@@ -109,7 +109,7 @@ class Welder {
   double reach(std::uint32_t edge) const {
     return rules_.is_relative ? std::min(rules_.reach, curve(leading_[edge]).box().diagonal() / 8) : rules_.reach;
   }
-  /// Whether an edge is the opposite border of a border's patch, and SharedEdges::none of the rows between them lies farther away
+  /// Whether an edge is the opposite border of a border's patch, and none of the rows between them lies farther away
   /// than the reach.
   bool is_thin(std::uint32_t border, std::uint32_t edge) const {
     const std::uint32_t opposite = border / 4 * 4 + (border + 2) % 4;
@@ -127,7 +127,7 @@ class Welder {
       if (!(length(border.first() - first) <= reach && length(border.last() - last) <= reach)) continue;
       const double distance = distance_bound(border, met, turned);
       if (!(distance <= reach)) continue;
-      const bool is_nearer = nearest.other == SharedEdges::none || distance < nearest.distance ||
+      const bool is_nearer = nearest.other == no_id || distance < nearest.distance ||
                              (distance == nearest.distance && comes_before(met, curve(leading_[nearest.other])));
       if (is_nearer && !is_thin(a, other)) nearest = {nearest.edge, other, turned, distance};
     }
@@ -137,7 +137,7 @@ class Welder {
   std::vector<EdgePlace> places() const {
     std::vector<EdgePlace> places;
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
-      if (leading_[edge] == SharedEdges::none || (has_more_[edge] && rules_.is_relative)) continue;
+      if (leading_[edge] == no_id || (has_more_[edge] && rules_.is_relative)) continue;
       if (!rules_.stay.empty() && rules_.stay[leading_[edge]]) continue;
       const auto [first, last] = ends_of(leading_[edge]);
       const BezierPatch& patch = set_.patches[patch_of(first)];
@@ -164,7 +164,7 @@ class Welder {
       }
       for (std::size_t n = k; n > 0 && look(places[n - 1]); --n) {
       }
-      if (nearest.other == SharedEdges::none) continue;
+      if (nearest.other == no_id) continue;
       if (!joined_) joined_.emplace(leading_.size());
       joined_->unite(nearest.edge, nearest.other, nearest.reversed);
     }
@@ -177,7 +177,7 @@ class Welder {
     std::iota(givers_.begin(), givers_.end(), std::uint32_t{0});
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
       std::uint32_t& giver = givers_[joined_->find(edge).member];
-      if (giver != edge && leading_[edge] != SharedEdges::none && leads(leading_[edge], leading_[giver])) giver = edge;
+      if (giver != edge && leading_[edge] != no_id && leads(leading_[edge], leading_[giver])) giver = edge;
     }
   }
 
@@ -217,7 +217,7 @@ class Welder {
   /// Whether a border is a point, by itself or by welding.
   bool is_made_point(std::uint32_t border) {
     const std::uint32_t edge = edge_of_border(border);
-    return edge == SharedEdges::none || is_pole_[canonical(edge)];
+    return edge == no_id || is_pole_[canonical(edge)];
   }
   /// Whether welding leaves nothing of a patch but a line or a point: opposite borders become points, and the patch is a
   /// needle between them.
@@ -244,18 +244,17 @@ class Welder {
       const bool is_point = std::ranges::all_of(sides, [&](auto side) { return is_made_point(4 * patch + side); });
       const auto holds = [&](std::uint32_t side) {
         const std::uint32_t border = 4 * patch + side, edge = edge_of_border(border);
-        return edge != SharedEdges::none && is_held[canonical(edge)] && (is_point || !is_made_point(border));
+        return edge != no_id && is_held[canonical(edge)] && (is_point || !is_made_point(border));
       };
       if (std::ranges::any_of(sides, holds)) continue;
       for (const std::uint32_t side : sides)
-        if (const std::uint32_t edge = edge_of_border(4 * patch + side); edge != SharedEdges::none)
-          kept.push_back(canonical(edge));
+        if (const std::uint32_t edge = edge_of_border(4 * patch + side); edge != no_id) kept.push_back(canonical(edge));
     }
     for (const std::uint32_t edge : kept) is_pole_[edge] = 0;
   }
   void find_pole(std::uint32_t border) {
     const std::uint32_t edge = edge_of_border(border);
-    if (edge == SharedEdges::none || shapes_[patch_of(border)].is_curve || !is_point(border)) return;
+    if (edge == no_id || shapes_[patch_of(border)].is_curve || !is_point(border)) return;
     is_pole_.resize(leading_.size(), 0);
     is_pole_[canonical(edge)] = 1;
   }
@@ -310,7 +309,7 @@ class Welder {
         const std::uint32_t corner = givers[border];
         const bool moves = !(packed(corner) == packed(border)), takes = moves || (is_f64(corner) && corner != border);
         if (takes) weld_.corners.push_back({border, corner});
-        const bool was_point = edge == SharedEdges::none;
+        const bool was_point = edge == no_id;
         if (was_point || is_pole_[canonical(edge)]) {
           if (!was_point || takes) weld_.poles.push_back({border, corner});
           if (!was_point || moves) ++weld_.joined_by_distance;
@@ -326,7 +325,7 @@ class Welder {
   void renumber() {
     std::vector<std::uint32_t> numbers(leading_.size());
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge)
-      numbers[edge] = is_pole_[canonical(edge)] ? SharedEdges::none : canonical(edge);
+      numbers[edge] = is_pole_[canonical(edge)] ? no_id : canonical(edge);
     edges_.renumber(numbers);
   }
 

@@ -18,9 +18,8 @@ namespace {
 template <class T>
 void number(const std::vector<T>& positions, const std::vector<float>& normals, std::vector<std::uint32_t>& numbers,
             std::vector<std::uint32_t>& sources) {
-  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   const std::size_t count = positions.size() / 3;
-  std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 1), none);
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 1), no_id);
   const auto is_same = [&](std::size_t a, std::size_t b) {
     return position_bits(&positions[3 * a]) == position_bits(&positions[3 * b]) &&
            (normals.empty() || position_bits(&normals[3 * a]) == position_bits(&normals[3 * b]));
@@ -29,8 +28,8 @@ void number(const std::vector<T>& positions, const std::vector<float>& normals, 
   sources.clear();
   for (std::size_t k = 0; k < count; ++k) {
     std::size_t slot = hash(position_bits(&positions[3 * k])) & (table.size() - 1);
-    while (table[slot] != none && !is_same(table[slot], k)) slot = (slot + 1) & (table.size() - 1);
-    if (table[slot] == none) {
+    while (table[slot] != no_id && !is_same(table[slot], k)) slot = (slot + 1) & (table.size() - 1);
+    if (table[slot] == no_id) {
       table[slot] = static_cast<std::uint32_t>(k);
       numbers[k] = static_cast<std::uint32_t>(sources.size());
       sources.push_back(static_cast<std::uint32_t>(k));

@@ -176,8 +176,7 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& plann
 }
 
 void ProvenMesh::weld_shared_corners() {
-  constexpr std::uint32_t none = SharedEdges::none;
-  std::vector<std::uint32_t> goals(4 * plan_.patch_count(), none);  // `[corner that owns a vertex]`
+  std::vector<std::uint32_t> goals(4 * plan_.patch_count(), no_id);  // `[corner that owns a vertex]`
   std::vector<std::uint8_t> is_listed(goals.size(), 0);
   const auto note = [&](VertexCopies::Corner& copy) {
     copy.from = plan_.corner_owner(copy.from);
@@ -190,7 +189,7 @@ void ProvenMesh::weld_shared_corners() {
   }
   for (std::uint32_t corner = 0; corner < goals.size(); ++corner) {
     const std::uint32_t goal = goals[plan_.corner_owner(corner)];
-    if (goal != none && goal != corner && !is_listed[corner]) weld_.corners.push_back({corner, goal});
+    if (goal != no_id && goal != corner && !is_listed[corner]) weld_.corners.push_back({corner, goal});
   }
 }
 

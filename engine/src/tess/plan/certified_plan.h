@@ -110,7 +110,7 @@ class CertifiedPlan {
   /// another, or a point that another has.
   struct LinePatch {
     std::uint32_t patch;
-    std::uint32_t holder;  ///< a patch with triangles on that line; SharedEdges::none for points
+    std::uint32_t holder;  ///< a patch with triangles on that line; no_id for points
   };
   std::span<const LinePatch> line_patches() const { return rare_ ? rare_->lines : std::span<const LinePatch>(); }
   void set_line_patches(std::vector<LinePatch> lines) {

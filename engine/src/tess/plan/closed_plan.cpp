@@ -92,8 +92,7 @@ void CertifiedPlanner::find_edges_in_step() {
   UnionFind groups(edges_.count());
   const auto edge_of_border = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
   for (const auto& [a, b] : runs_->borders_in_step(*set_))
-    if (const std::uint32_t of_a = edge_of_border(a), of_b = edge_of_border(b);
-        of_a != SharedEdges::none && of_b != SharedEdges::none)
+    if (const std::uint32_t of_a = edge_of_border(a), of_b = edge_of_border(b); of_a != no_id && of_b != no_id)
       groups.unite(of_a, of_b);
   std::vector<std::uint32_t> places(edges_.count(), no_id);
   for (std::uint32_t edge = 0; edge < edges_.count(); ++edge) {
@@ -111,7 +110,7 @@ std::vector<std::uint8_t> CertifiedPlanner::joined_borders(const CertifiedPlan& 
   std::vector<std::uint8_t> borders(edges_.count(), 0), is_joined(4 * shapes_.size(), 0);
   const auto full_borders = [&](auto visit) {
     const auto visit_side = [&](std::size_t patch, Side side) {
-      if (const std::uint32_t edge = edges_.edge(patch, side); edge != SharedEdges::none)
+      if (const std::uint32_t edge = edges_.edge(patch, side); edge != no_id)
         visit(4 * patch + static_cast<std::size_t>(side), edge);
     };
     for (std::size_t patch = 0; patch < shapes_.size(); ++patch)

@@ -52,7 +52,7 @@ class BorderSegments {
     has_needs_[patch] = 1;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(patch, side);
-      if (edge != SharedEdges::none) needs_[edge].add(along(segments_[patch], side), never);
+      if (edge != no_id) needs_[edge].add(along(segments_[patch], side), never);
     }
   }
   /// Counts the needs of each edge in its eighths, for segments that are not uniform. `against`: for each border,
@@ -62,7 +62,7 @@ class BorderSegments {
     pieces_.resize(edges_.count());
     for (std::size_t k = 0; k < segments_.size(); ++k)
       for (const Side side : all_sides)
-        if (const std::uint32_t edge = edges_.edge(k, side); edge != SharedEdges::none && has_needs_[k])
+        if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && has_needs_[k])
           pieces_[edge].add(along(segments_[k], side), is_against(k, side));
   }
   /// Gives the edges of each group the needs of all of them, where these are uniform. Other groups keep their own:
@@ -87,7 +87,7 @@ class BorderSegments {
   }
   /// Whether a patch has an even rate along a border that other patches may share.
   bool is_even_edge(std::size_t patch, Side side) const {
-    return along(segments_[patch], side).parts_halves() && edges_.edge(patch, side) != SharedEdges::none;
+    return along(segments_[patch], side).parts_halves() && edges_.edge(patch, side) != no_id;
   }
   void make_even(std::size_t patch, Side side) { needs_[edges_.edge(patch, side)].is_even = 1; }
 
@@ -104,7 +104,7 @@ class BorderSegments {
     if (pieces_.empty()) {
       const auto segments = [&](Side side) {
         const std::uint32_t edge = edges_.edge(patch, side);
-        return edge == SharedEdges::none ? along(segments_[patch], side) : needs_[edge].segments();
+        return edge == no_id ? along(segments_[patch], side) : needs_[edge].segments();
       };
       return {segments(Side::v0), segments(Side::u1), segments(Side::v1), segments(Side::u0)};
     }
@@ -116,7 +116,7 @@ class BorderSegments {
   bool is_against(std::size_t patch, Side side) const { return against_[4 * patch + static_cast<std::size_t>(side)]; }
   Segments border(std::size_t patch, Side side) const {
     const std::uint32_t edge = edges_.edge(patch, side);
-    if (edge == SharedEdges::none) return along(segments_[patch], side);
+    if (edge == no_id) return along(segments_[patch], side);
     return of_edge(edge, is_against(patch, side));
   }
   Segments of_edge(std::uint32_t edge, bool against) const {
@@ -213,18 +213,17 @@ void CertifiedPlanner::keep_from_vanishing(CertifiedPlan& plan) const {
       without.push_back(k);
   plan.set_line_patches({});
   if (without.empty()) return;
-  constexpr std::uint32_t none = SharedEdges::none;
-  std::vector<std::uint32_t> holders(edges_.count(), none);  // `[edge]`: a patch with triangles
+  std::vector<std::uint32_t> holders(edges_.count(), no_id);  // `[edge]`: a patch with triangles
   for (std::uint32_t k = 0; k < plan.divisions_.size(); ++k)
     for (const Side side : all_sides)
-      if (const std::uint32_t edge = edges_.edge(k, side); edge != none && plan.divisions_[k].triangle_count() > 0)
+      if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && plan.divisions_[k].triangle_count() > 0)
         holders[edge] = k;
   std::vector<CertifiedPlan::LinePatch> lines;
   for (const std::uint32_t k : without) {
-    std::uint32_t holder = none;
+    std::uint32_t holder = no_id;
     for (const Side side : all_sides)
-      if (const std::uint32_t edge = edges_.edge(k, side); edge != none && holder == none) holder = holders[edge];
-    if (holder == none && !is_welded_spot(k, plan)) {
+      if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && holder == no_id) holder = holders[edge];
+    if (holder == no_id && !is_welded_spot(k, plan)) {
       plan.divisions_[k].add_inner_points(plan.segments_[k]);
     } else {
       lines.push_back({k, holder});

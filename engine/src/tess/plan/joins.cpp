@@ -8,8 +8,6 @@
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-constexpr std::uint32_t none = SharedEdges::none;
 /// The largest distance between two float normals of one direction.
 constexpr double normal_rounding = 1e-5;
 
@@ -22,7 +20,7 @@ class Joiner {
         edges_(edges),
         normals_(normals),
         apart_(2 * std::sin(angle / 2) + normal_rounding),
-        welded_(4 * plan.patch_count(), none),
+        welded_(4 * plan.patch_count(), no_id),
         is_moved_(4 * plan.patch_count(), 0),
         corners_(4 * plan.patch_count()) {
     for (std::uint32_t k = 0; k < weld.borders.size(); ++k) welded_[weld.borders[k].to] = k;
@@ -41,15 +39,15 @@ class Joiner {
   }
 
   void join_borders(const VertexCopies& weld) {
-    std::vector<std::uint32_t> leading(edges_.count(), none);
+    std::vector<std::uint32_t> leading(edges_.count(), no_id);
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (edge != none && leading[edge] == none && welded_[border] == none) leading[edge] = border;
+      if (edge != no_id && leading[edge] == no_id && welded_[border] == no_id) leading[edge] = border;
     });
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (edge == none || leading[edge] == border) return;
+      if (edge == no_id || leading[edge] == border) return;
       const std::uint32_t weld_at = welded_[border],
-                          lead = weld_at == none ? leading[edge] : weld.borders[weld_at].from;
-      const bool reversed = weld_at == none ? runs_against(set_, border, lead) : weld.borders[weld_at].reversed;
+                          lead = weld_at == no_id ? leading[edge] : weld.borders[weld_at].from;
+      const bool reversed = weld_at == no_id ? runs_against(set_, border, lead) : weld.borders[weld_at].reversed;
       if (!is_smooth(border, lead, reversed)) return;
       joins_.borders.push_back({border, lead, reversed});
       const auto ends = ends_of(border), met = ends_of(lead);
@@ -72,11 +70,11 @@ class Joiner {
 
   /// Lists corners that are one. The vertex is that of the first one whose point welding does not move, else the first.
   void list_corners() {
-    std::vector<std::uint32_t> owners(is_moved_.size(), none);  // `[member that stands for a set]`
+    std::vector<std::uint32_t> owners(is_moved_.size(), no_id);  // `[member that stands for a set]`
     for (const bool moved : {false, true})
       for_borders([&](std::uint32_t corner, std::uint32_t) {
         std::uint32_t& owner = owners[corners_.find(corner).member];
-        if (owner == none && (is_moved_[corner] != 0) == moved) owner = corner;
+        if (owner == no_id && (is_moved_[corner] != 0) == moved) owner = corner;
       });
     const auto owner_of = [&](std::uint32_t corner) { return owners[corners_.find(corner).member]; };
     for_borders([&](std::uint32_t corner, std::uint32_t) {

@@ -73,7 +73,7 @@ bool CertifiedPlan::has_triangles_of(const CertifiedPlan& other) const {
 void CertifiedPlan::count_open_edges_beside_loops(const SharedEdges& edges) {
   std::vector<std::uint32_t> borders(edges.count(), 0);
   const auto visit_border = [&](std::size_t patch, Side side, const auto& visit) {
-    if (const std::uint32_t edge = edges.edge(patch, side); edge != SharedEdges::none)
+    if (const std::uint32_t edge = edges.edge(patch, side); edge != no_id)
       visit(edge, divisions_[patch].border[static_cast<std::size_t>(side)].rate());
   };
   const auto for_borders = [&](const auto& visit) {

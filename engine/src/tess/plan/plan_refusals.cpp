@@ -58,7 +58,7 @@ void CertifiedPlanner::add_givers_of_cut(std::vector<std::uint8_t>& patches) con
   std::vector<std::uint8_t> edges(edges_.count(), 0);
   const auto for_sides = [&](std::size_t patch, auto visit) {
     for (const Side side : all_sides)
-      if (const std::uint32_t edge = edges_.edge(patch, side); edge != SharedEdges::none) visit(edges[edge]);
+      if (const std::uint32_t edge = edges_.edge(patch, side); edge != no_id) visit(edges[edge]);
   };
   for (std::size_t k = 0; k < patches.size(); ++k)
     if (is_cut(k) && patches[k]) for_sides(k, [](std::uint8_t& edge) { edge = 1; });

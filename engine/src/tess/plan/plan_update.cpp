@@ -75,7 +75,7 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
 
 bool PlanUpdate::moves_line_patches(const PlanOfSet& of) const {
   return std::ranges::any_of(of.plan.line_patches(), [&](const CertifiedPlan::LinePatch& line) {
-    return line.holder == SharedEdges::none || is_touched(of.set, line.patch) || is_touched(of.set, line.holder);
+    return line.holder == no_id || is_touched(of.set, line.patch) || is_touched(of.set, line.holder);
   });
 }
 

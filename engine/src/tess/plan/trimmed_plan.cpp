@@ -63,7 +63,7 @@ CertifiedPlanner::CutRoom CertifiedPlanner::room_of(const CutPatch& cut, double 
   room.given = roundings_[patch] + 0x1p-51 * (room.limits.speed.u + room.limits.speed.v) + fit_error_;
   for (const Side side : all_sides) {
     const CutPatch::SameBorder same = cut.same[static_cast<std::size_t>(side)];
-    if (same.border == CutPatch::none) continue;
+    if (same.border == no_id) continue;
     const SideCurve own(set_->patches[patch], side), taken(set_->patches[same.border / 4], all_sides[same.border % 4]);
     const double moved = distance_bound(own, taken, same.reversed) + roundings_[same.border / 4];
     room.given = std::max(room.given, moved + fit_error_);
@@ -133,9 +133,9 @@ void CertifiedPlanner::find_same_borders(CertifiedPlan& plan) const {
     cut.patch = set_->trims->cuts[c].patch;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges_.edge(cut.patch, side);
-      if (edge == SharedEdges::none) continue;
+      if (edge == no_id) continue;
       const std::uint32_t whole = directions.leading(edge), border = 4 * cut.patch + static_cast<std::uint32_t>(side);
-      if (whole == SharedEdges::none || shapes[whole / 4].is_curve) continue;
+      if (whole == no_id || shapes[whole / 4].is_curve) continue;
       cut.same[static_cast<std::size_t>(side)] = {whole, directions.runs_against_leading(border)};
     }
   }
@@ -160,7 +160,7 @@ void CertifiedPlanner::choose_cut(const Request& request, CutShares& shares, Cer
 std::vector<std::uint8_t> CertifiedPlanner::shared_edges() const {
   std::vector<std::uint8_t> borders(edges_.count(), 0);
   for (const std::uint32_t edge : edges_.of_borders())
-    if (edge != SharedEdges::none) borders[edge] += borders[edge] < 2;
+    if (edge != no_id) borders[edge] += borders[edge] < 2;
   for (std::uint8_t& count : borders) count = count == 2;
   return borders;
 }
@@ -171,7 +171,7 @@ double CertifiedPlanner::cut_patch(std::size_t c, const CutPass& pass, CutPatchM
   CutRoom room = pass.rooms[c];
   for (const Side side : all_sides) {
     const std::uint32_t edge = edges_.edge(cut.patch, side);
-    room.limits.is_shared[static_cast<std::size_t>(side)] = edge != SharedEdges::none && pass.is_shared[edge];
+    room.limits.is_shared[static_cast<std::size_t>(side)] = edge != no_id && pass.is_shared[edge];
   }
   room.limits.cancel = pass.cancel;
   std::optional<PatchStops> demands;

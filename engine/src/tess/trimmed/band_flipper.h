@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/function_ref.h"
-#include "tess/trimmed/band_mesh.h"
+#include "plane/band_mesh.h"
 #include "tess/trimmed/patch_points.h"
 #include "tessera/geometry.h"
 

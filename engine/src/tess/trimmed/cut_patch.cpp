@@ -175,9 +175,9 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
 void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) {
   CutCells& cells = cutter_.cells();
   const std::size_t first = cutter_.loop_vertex_count(), count = cutter_.vertex_count();
-  numbers_.assign(count, CutPatch::none);
+  numbers_.assign(count, no_id);
   points_.clear();
-  out.poles.fill(CutPatch::none);
+  out.poles.fill(no_id);
   const auto add = [&](std::uint32_t vertex) {
     ParameterPoint at = cutter_.local(vertex);
     for (const Side side : all_sides) {
@@ -185,7 +185,7 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
       const bool is_on = across == (side == Side::u1 || side == Side::v1 ? 1 : 0);
       if (!is_on || !collapsed.has(edge_of(side))) continue;
       std::uint32_t& pole = out.poles[static_cast<std::size_t>(side)];
-      if (pole != CutPatch::none) return pole;
+      if (pole != no_id) return pole;
       pole = static_cast<std::uint32_t>(out.vertices.size());
       (runs_along_u(side) ? at.u : at.v) = 0;
       break;
@@ -199,7 +199,7 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
     CutPatch::Triangle triangle{a, b, c};
     for (std::uint32_t& corner : triangle) {
       std::uint32_t& known = numbers_[corner];
-      if (known == CutPatch::none) known = add(corner);
+      if (known == no_id) known = add(corner);
       corner = known;
     }
     if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
@@ -219,8 +219,7 @@ void CutPatchMaker::list_loop_segments(CutPatch& out) {
   } else {
     cutter_.for_loop_chords([&](const LoopChord& chord) {
       const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
-      if (start != CutPatch::none && end != CutPatch::none)
-        out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});
+      if (start != no_id && end != no_id) out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});
     });
   }
   out.open_edges -= chords_;
@@ -315,7 +314,7 @@ void CutPatchMaker::mark_loop_segments(CutPatch& out) {
 }
 
 void CutPatchMaker::compact(std::span<const std::uint32_t> kept, CutPatch& out) {
-  std::vector<std::uint32_t> places(kept.size(), CutPatch::none);
+  std::vector<std::uint32_t> places(kept.size(), no_id);
   std::uint32_t count = 0;
   for (std::uint32_t vertex = 0; vertex < kept.size(); ++vertex) {
     if (kept[vertex] != vertex) continue;
@@ -327,7 +326,7 @@ void CutPatchMaker::compact(std::span<const std::uint32_t> kept, CutPatch& out) 
   points_.resize(count);
   const auto moved = [&](std::uint32_t vertex) { return places[kept[vertex]]; };
   for (std::uint32_t& pole : out.poles)
-    if (pole != CutPatch::none) pole = moved(pole);
+    if (pole != no_id) pole = moved(pole);
   for (CutPatch::Triangle& triangle : out.triangles)
     for (std::uint32_t& corner : triangle) corner = moved(corner);
   for (CutPatch::LoopSegment& segment : out.loop_segments)
@@ -367,7 +366,7 @@ void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders,
   // A pole is also the end of the sides beside it.
   for (std::size_t side = 0; all && side < 4; ++side) {
     const std::uint32_t pole = out.poles[side];
-    if (pole == CutPatch::none) continue;
+    if (pole == no_id) continue;
     const Side beside = all_sides[side];
     const bool along_u = runs_along_u(beside);
     const double at = beside == Side::v0   ? domain.v0

@@ -8,16 +8,15 @@
 #include <vector>
 
 #include "block/patch_trims.h"
+#include "plane/band_refiner.h"
 #include "tess/bounds/chord_bound.h"
 #include "tess/cells/stitched_patch.h"
-#include "tess/trimmed/band_refiner.h"
 #include "tess/trimmed/trimmed_patch.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
 /// The triangles of a cut patch.
 struct CutPatch {
-  static constexpr std::uint32_t none = 0xffffffff;
   using Triangle = CutCells::Triangle;
   /// A vertex where a segment of the patch's border begins: point `at` = 0 .. rate along the border's parameter.
   struct BorderVertex {
@@ -40,8 +39,8 @@ struct CutPatch {
   };
   /// The border of a whole patch that has the same points as a side.
   struct SameBorder {
-    std::uint32_t border = none;  ///< 4 * patch + side
-    bool reversed = false;        ///< their parameters run in opposite directions
+    std::uint32_t border = no_id;  ///< 4 * patch + side
+    bool reversed = false;         ///< their parameters run in opposite directions
   };
 
   std::uint32_t patch = 0;
@@ -62,7 +61,7 @@ struct CutPatch {
   std::uint32_t open_edges = 0;
   double distance = 0, sliver = 0;  ///< the largest distance of a triangle, and of a sliver between chords and curves
   Rates widest;                     ///< odd rates at which cells are no smaller than the box of any triangle
-  std::array<std::uint32_t, 4> poles{none, none, none, none};  ///< by Side: the vertex of a collapsed border
+  std::array<std::uint32_t, 4> poles{no_id, no_id, no_id, no_id};  ///< by Side: the vertex of a collapsed border
 
   /// The box of a triangle's parameters. A pole has every parameter along its border, so it does not count there.
   struct Box {

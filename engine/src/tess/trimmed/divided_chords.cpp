@@ -36,7 +36,7 @@ class Divider {
   }
   bool is_border(std::uint32_t a, std::uint32_t b) const {
     const std::uint32_t from = numbers_[a], to = numbers_[b];
-    if (from == CutPatch::none || to == CutPatch::none || from == to) return false;
+    if (from == no_id || to == no_id || from == to) return false;
     const auto uses = uses_.find(key(from, to));
     return uses != uses_.end() && uses->second == 1;
   }
@@ -50,7 +50,7 @@ class Divider {
     for (std::uint32_t k = 0; k < cutter_.vertex_count(); ++k) {
       const ParameterPoint at = cutter_.point(k);
       if (lies_between(at.u, a.u, b.u) && lies_between(at.v, a.v, b.v) && !(at == a) && !(at == b) &&
-          numbers_[k] != CutPatch::none && orientation(a, b, at) == 0)
+          numbers_[k] != no_id && orientation(a, b, at) == 0)
         points_.push_back(k);
     }
     points_.push_back(chord.end);

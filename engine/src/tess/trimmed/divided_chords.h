@@ -13,7 +13,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// a part that two chords share nothing is left, since both of its sides are inside or outside.
 ///
 /// - `cutter`: after it has triangulated a patch.
-/// - `numbers`: by vertex of the cutter, the vertex of the patch, or CutPatch::none.
+/// - `numbers`: by vertex of the cutter, the vertex of the patch, or no_id.
 /// - `triangles`: of the patch.
 std::vector<CutPatch::LoopSegment> divided_chords(const PatchCutter& cutter, std::span<const std::uint32_t> numbers,
                                                   std::span<const CutPatch::Triangle> triangles);

@@ -54,16 +54,16 @@ std::size_t PatchCutter::add_side(std::span<const SidePoint> side, double across
     return runs_along_u ? ParameterPoint{along, across} : ParameterPoint{across, along};
   };
   const std::size_t before = chords_.size();
-  std::uint32_t last = no_place;
+  std::uint32_t last = no_id;
   for (std::size_t k = 0; k + 1 < side.size(); ++k) {
     if (!(above ? side[k].above : side[k].below)) {
-      last = no_place;
+      last = no_id;
       continue;
     }
-    if (last == no_place) last = add_point(at(side[k].at));
+    if (last == no_id) last = add_point(at(side[k].at));
     const std::uint32_t next = add_point(at(side[k + 1].at));
     chords_.push_back({last, next});
-    marks_.push_back(no_place);
+    marks_.push_back(no_id);
     last = next;
   }
   return chords_.size() - before;

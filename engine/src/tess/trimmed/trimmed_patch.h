@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/function_ref.h"
+#include "plane/chord_crossings.h"
+#include "plane/cut_cells.h"
 #include "tess/cells/patch_side.h"
-#include "tess/trimmed/chord_crossings.h"
-#include "tess/trimmed/cut_cells.h"
 #include "tess/trimmed/patch_sides.h"
 #include "tess/trimmed/piece_chords.h"
 #include "tess/trimmed/speed_bound.h"
@@ -83,7 +83,7 @@ class PatchCutter {
   template <class Visit>
   void for_loop_chords(Visit visit) const {
     for (std::size_t k = 0; k < chords_.size(); ++k) {
-      if (marks_[k] == no_place) continue;
+      if (marks_[k] == no_id) continue;
       const auto [start, end] = chords_[k];
       if (points_[start] == points_[end]) continue;
       const LoopChord& whole = loop_chords_[marks_[k]];

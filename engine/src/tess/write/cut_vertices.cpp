@@ -70,7 +70,7 @@ class CutWriter {
   /// Takes the vertices of the whole patch along a side.
   void take_border(const CutPatch& cut, Side side) const {
     const CutPatch::SameBorder same = cut.same[static_cast<std::size_t>(side)];
-    if (same.border == CutPatch::none) return;
+    if (same.border == no_id) return;
     const RingVertices ring(plan_, same.border);
     const bool opposite = same.reversed != is_backward(same.border);
     const auto for_vertices = [&](const auto& visit) {

@@ -6,7 +6,7 @@
 #include "base/impl_access.h"
 #include "base/text.h"
 #include "block/patch_set_impl.h"
-#include "eval/view_checks.h"
+#include "eval/grid_checks.h"
 #include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 

@@ -1,0 +1,204 @@
+#include "model/model_patches.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "base/impl_access.h"
+#include "tessera/status.h"
+#include "trim/grid_loops.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// How far the outline of a spline, as CAD files have it, may be off the sides of its domain, as a share of it.
+constexpr double outline_snap = 0x1p-13;
+
+/// A number that loops share with few others.
+double key_of(const std::vector<TrimLoop>& loops) {
+  double key = 0;
+  for (const TrimLoop& loop : loops)
+    for (const Curve& curve : loop.curves) key += curve.points().front().x + 0.7548776662466927 * curve.points()[1].y;
+  return key;
+}
+
+}  // namespace
+
+bool FaceTrimsFinder::Known::is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid,
+                                    const TrimOptions& other) const {
+  const CutLines& lines = impl_of(trims.region).lines;
+  return options.periodic_u == other.periodic_u && options.periodic_v == other.periodic_v &&
+         options.snap == other.snap && std::ranges::equal(lines.u.lines, grid.breaks_u()) &&
+         std::ranges::equal(lines.v.lines, grid.breaks_v()) &&
+         std::ranges::equal(*loops, others, [](const TrimLoop& a, const TrimLoop& b) {
+           return a.hole == b.hole && a.curves == b.curves;
+         });
+}
+
+Result<FaceTrims*> FaceTrimsFinder::find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid,
+                                         bool is_loose) {
+  TrimOptions options = TrimRegion::Impl::options_of(grid);
+  if (is_loose) options.snap = outline_snap;
+  const auto [first, last] = known_.equal_range(key_of(loops));
+  for (auto known = first; known != last; ++known)
+    if (known->second.is_for(loops, grid, options)) return &known->second.trims;
+  Result<TrimRegion> region = TrimRegion::Impl::make(*loops, grid.breaks_u(), grid.breaks_v(), options,
+                                                     TrimRegion::Impl::Use::patches, &extractions_);
+  if (!region) return region.status();
+  FaceTrims trims{*std::move(region), {}};
+  if (!trims.region.is_whole()) trims.uses = patch_uses(trims.region);
+  return &known_.emplace(key_of(loops), Known{loops, options, std::move(trims)})->second.trims;
+}
+
+void GatheredPatches::add(std::size_t surface, PatchGrid grid) {
+  const auto u = grid.breaks_u(), v = grid.breaks_v();
+  box.extend(grid.box());
+  note_error(grid.fit_error());
+  std::vector<BezierPatch> added = std::move(grid).take_patches();
+  if (patches.empty()) {
+    patches = std::move(added);
+    sources.reserve(patches.size());
+  } else {
+    patches.insert(patches.end(), std::move_iterator(added.begin()), std::move_iterator(added.end()));
+  }
+  std::vector<PatchSource> row;
+  for (std::size_t k = 0; k + 1 < v.size(); ++k)
+    row.push_back({static_cast<std::uint32_t>(surface), {0, 1, v[k], v[k + 1]}});
+  for (std::size_t k = 0; k + 1 < u.size(); ++k) {
+    for (PatchSource& source : row) {
+      source.domain.u0 = u[k];
+      source.domain.u1 = u[k + 1];
+    }
+    sources.insert(sources.end(), row.begin(), row.end());
+  }
+  surface_count = surface + 1;
+}
+
+void GatheredPatches::add_kept(std::size_t surface, const PatchGrid& grid, FaceTrims& face) {
+  const std::vector<PatchUse>& uses = face.uses;
+  note_error(grid.fit_error());
+  surface_count = surface + 1;
+  if (!face.index && std::ranges::find(uses, PatchUse::cut) != uses.end()) {
+    face.index = static_cast<std::uint32_t>(trims.regions.size());
+    trims.regions.push_back(face.region);
+  }
+  for (std::size_t place = 0; place < uses.size(); ++place) {
+    if (uses[place] == PatchUse::out) continue;
+    if (uses[place] == PatchUse::cut)
+      trims.cuts.push_back(
+          {static_cast<std::uint32_t>(patches.size()), *face.index, static_cast<std::uint32_t>(place)});
+    sources.push_back({static_cast<std::uint32_t>(surface), grid.patch_domain(place)});
+    patches.push_back(grid.patches()[place]);
+    box.extend(patches.back().hull_box());
+  }
+}
+
+void GatheredPatches::note_error(const FitError& error) {
+  fit_error.distance = std::max(fit_error.distance, error.distance);
+  fit_error.certified = fit_error.certified && error.certified;
+}
+
+Result<PatchSet> GatheredPatches::packed(PatchSetOptions options) && {
+  note_error(options.fit_error);
+  options.fit_error = fit_error;
+  if (patches.empty() && surface_count > 0)
+    return Status(StatusCode::invalid_argument, "trimming loops cut away every patch");
+  Result<PatchSet> set = PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
+  if (!set || trims.cuts.empty()) return set;
+  trims.is_cut.resize(set->patch_count());
+  for (const PatchTrims::Cut& cut : trims.cuts) trims.is_cut[cut.patch] = 1;
+  impl_of(*set).trims = std::make_shared<const PatchTrims>(std::move(trims));
+  return set;
+}
+
+void ModelPatches::name_edges(const Shape& shape, const Affine& placement, std::size_t first) {
+  if (shape.edges.empty() || !options_.trims) return;
+  faces_.resize(first + shape.faces.size());
+  for (std::size_t k = 0; k < shape.faces.size(); ++k)
+    faces_[first + k] = {&shape.faces[k], static_cast<std::uint32_t>(edges_.edges.size())};
+  const auto first_vertex = static_cast<std::uint32_t>(edges_.vertices.size());
+  const auto vertex = [&](std::uint32_t id) { return id == no_id ? no_id : first_vertex + id; };
+  for (const BrepEdge& edge : shape.edges)
+    edges_.edges.push_back({edge.range, vertex(edge.start), vertex(edge.end), edge.degenerate});
+  for (const BrepVertex& of : shape.vertices) edges_.vertices.push_back(placement.point(of.position));
+}
+
+void ModelPatches::name_edges() {
+  for (const Instance& instance : model_.instances)
+    name_edges(model_.shapes[instance.shape], instance.placement, instance.first_surface);
+}
+
+Status ModelPatches::add(PatchGrid grid) {
+  const std::size_t k = ends_.size(), first = all_.patches.size();
+  const NamedFace named = named_face(k);
+  const bool is_trimmed = !model_.surfaces[k].trims->empty();
+  const bool has_outline = named.face && !named.face->outline->empty();
+  if (!options_.trims || !(is_trimmed || has_outline)) {
+    all_.add(k, std::move(grid));
+  } else {
+    ModelSurface surface = model_.surfaces[k];
+    if (!is_trimmed) surface.trims = named.face->outline;
+    const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
+    // The outline of a quadric has the pace of its edges, which snapping to lines between patches would change.
+    const bool is_loose = !is_trimmed && !std::holds_alternative<QuadricPiece>(surface.surface);
+    const Result<FaceTrims*> trims = loops ? trims_.find(*loops, grid, is_loose) : loops.status();
+    if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
+    if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
+    const std::size_t places = grid.patches().size();
+    if (!trims || (*trims)->region.is_whole()) {
+      all_.add(k, std::move(grid));
+    } else {
+      all_.add_kept(k, grid, **trims);
+    }
+    if (trims && named.face) add_edges(named.first_edge, *loops, **trims, first, places);
+  }
+  ends_.push_back(all_.patches.size());
+  return {};
+}
+
+bool ModelPatches::pass_whole_patch() {
+  const std::size_t k = ends_.size();
+  const ModelSurface& surface = model_.surfaces[k];
+  if (!surface.trims->empty() || named_face(k).face || surface.placement != Affine{}) return false;
+  if (!std::holds_alternative<BezierPatch>(surface.surface)) return false;
+  ends_.push_back(all_.patches.size());
+  return true;
+}
+
+Status ModelPatches::add_all(const FitOptions& fit) {
+  for (std::size_t k = 0; k < model_.surfaces.size(); ++k) {
+    Result<PatchGrid> grid = to_bezier(model_.surfaces[k], fit);
+    if (!grid) return in_surface(model_, k, grid.status());
+    if (Status status = add(*std::move(grid)); !status.ok()) return status;
+  }
+  return {};
+}
+
+Box3 ModelPatches::take_box() {
+  all_.patches.clear(), all_.sources.clear(), all_.trims.cuts.clear(), edges_.faces.clear();
+  return std::exchange(all_.box, {});
+}
+
+Result<PatchSet> ModelPatches::packed() && {
+  Result<PatchSet> set = std::move(all_).packed(options_);
+  if (set) impl_of(*set).trim_faults = std::move(faults_);
+  if (set && !edges_.faces.empty()) impl_of(*set).edges = std::make_shared<const PatchEdges>(std::move(edges_));
+  if (set || set.status().index() == Status::no_index) return set;
+  const auto patch = static_cast<std::size_t>(set.status().index());
+  const auto surface = std::upper_bound(ends_.begin(), ends_.end(), patch) - ends_.begin();
+  return in_surface(model_, static_cast<std::size_t>(surface), set.status());
+}
+
+void ModelPatches::add_edges(std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops,
+                             const FaceTrims& trims, std::size_t first, std::size_t places) {
+  const auto names = [](const TrimLoop& loop) { return !loop.coedges.empty(); };
+  if (std::ranges::none_of(*loops, names)) return;
+  PatchEdges::Face face{first_edge, loops, trims.region, {}};
+  face.patches.assign(places, no_id);
+  const bool is_whole = all_.patches.size() - first == places;
+  for (std::size_t place = 0; place < places; ++place)
+    if (is_whole || trims.uses[place] != PatchUse::out) face.patches[place] = static_cast<std::uint32_t>(first++);
+  edges_.faces.push_back(std::move(face));
+}
+
+}}  // namespace tessera::abi_0_1
