@@ -13,7 +13,7 @@
 
 #include "base/impl_access.h"
 #include "tess/edges/position_bits.h"
-#include "tess/plan/certified_plan.h"
+#include "tess/plan/plan_facts.h"
 #include "tessera/tessellation.h"
 
 namespace tessera::test {
@@ -43,16 +43,15 @@ class [[gnu::visibility("hidden")]] MeetingBorders {
  public:
   MeetingBorders(const PatchSet& set, const WeldRules& weld) : counts_(4 * set.patch_count(), 0) {
     for (std::size_t patch = 0; patch < set.patch_count(); ++patch) is_cut_.push_back(set.is_cut(patch));
-    const Result<CertifiedPlanner> planner =
-        CertifiedPlanner::make(impl_of(set), {.weld = weld, .angle = {}, .camera = {}}, {});
-    if (!planner) return;
-    const SharedEdges& edges = planner->edges();
+    const Result<PlanFacts> facts = find_plan_facts(impl_of(set), {.weld = weld, .angle = {}, .camera = {}}, {});
+    if (!facts) return;
+    const SharedEdges& edges = facts->borders.edges();
     std::vector<std::uint32_t> borders(edges.count(), 0);
     const auto for_borders = [&](auto visit) {
       for (std::size_t patch = 0; patch < set.patch_count(); ++patch)
         for (std::size_t side = 0; side < 4; ++side) {
           const std::uint32_t edge = edges.edge(patch, all_sides[side]);
-          if (edge != no_id && !planner->shapes()[patch].is_curve) visit(4 * patch + side, edge);
+          if (edge != no_id && !facts->needs.shapes()[patch].is_curve) visit(4 * patch + side, edge);
         }
     };
     for_borders([&](std::size_t, std::uint32_t edge) { ++borders[edge]; });

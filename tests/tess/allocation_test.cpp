@@ -64,7 +64,7 @@ TEST(TessellationMemory, GradedSegmentsTakeSixtyFourBytesEach) {
     std::size_t segments = 0;
     const auto count = [&] {
       const Tessellation plan = good(Tessellation::make(set, {.angle = angle}));
-      for (const Division& division : proven_mesh_of(plan).plan().divisions())
+      for (const Division& division : proven_mesh_of(plan).plan().patches().divisions)
         segments += division.ring_count() + static_cast<std::size_t>(division.inner.u.rate() + division.inner.v.rate());
     };
     const double bytes = bytes_per_patch(set, count);

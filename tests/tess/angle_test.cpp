@@ -108,7 +108,7 @@ TEST(Angle, SegmentsLieWherePatchesBend) {
   for (const double angle : {10 * degree, 3 * degree}) {
     const Tessellation plan = good(Tessellation::make(set, {.angle = angle}));
     double cells = 0, if_uniform = 0;
-    for (const PatchSegments segments : proven_mesh_of(plan).plan().segments()) {
+    for (const PatchSegments segments : proven_mesh_of(plan).plan().patches().segments) {
       const auto finest = [](Segments along) {
         double rate = 0;
         for (int e = 0; e < Segments::parts; ++e) rate = std::max(rate, along.rate_in(e).value());

@@ -63,7 +63,7 @@ TEST(Certificate, HoldsAcrossTheMiddleOfEvenRates) {
     const Mesh mesh = mesh_of(set, plan);
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       const std::uint32_t patch = mesh.patches[t];
-      const Rates rates = proven_mesh_of(plan).plan().segments()[patch].rates();
+      const Rates rates = proven_mesh_of(plan).plan().patches().segments[patch].rates();
       const MeshTriangle triangle = triangle_of(mesh, t);
       const auto straddles = [&](std::size_t along) {
         const auto at = [&](std::size_t c) { return triangle.parameters[c][along]; };

@@ -34,7 +34,7 @@ std::vector<std::vector<BezierPatch>> half_far_strips() {
 }
 
 std::size_t f64_count(const Tessellation& plan) {
-  const auto patches = proven_mesh_of(plan).plan().f64_patches();
+  const auto patches = proven_mesh_of(plan).plan().patches().f64_patches;
   return static_cast<std::size_t>(std::count(patches.begin(), patches.end(), 1));
 }
 
@@ -90,7 +90,7 @@ TEST(F64Patches, TakeNoVerticesOfFloats) {
     const PatchSet set = set_at_zero(strip);
     PlannerOptions options{.weld = {tolerance / 8, true}, .f64_patches = {}, .angle = {}, .camera = {}};
     for (std::size_t k = 0; k < strip.size(); ++k) options.f64_patches.push_back(k % 2);
-    const CertifiedPlanner planner = good(CertifiedPlanner::make(impl_of(set), options, {}));
+    const PlanFacts facts = good(find_plan_facts(impl_of(set), options, {}));
     std::size_t taken = 0;
     const auto look = [&](const auto& copies) {
       for (const auto& copy : copies) {
@@ -98,8 +98,8 @@ TEST(F64Patches, TakeNoVerticesOfFloats) {
         taken += options.f64_patches[copy.from / 4];
       }
     };
-    look(planner.weld().borders);
-    look(planner.weld().corners);
+    look(facts.borders.weld().borders);
+    look(facts.borders.weld().corners);
     EXPECT_GT(taken, strip.size());
   }
 }

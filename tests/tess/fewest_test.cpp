@@ -89,7 +89,7 @@ TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
   std::size_t in_halves = 0;
   double cells = 0, if_uniform = 0;
   for (std::size_t k = 0; k < field.patch_count(); ++k) {
-    const PatchSegments segments = proven_mesh_of(plan).plan().segments()[k];
+    const PatchSegments segments = proven_mesh_of(plan).plan().patches().segments[k];
     in_halves += !segments.are_uniform();
     cells += segments.cells();
     const Rates finest{std::max(segments.u.lower_rate(), segments.u.upper_rate()),
@@ -104,7 +104,7 @@ TEST(Fewest, HalvesOfPatchesHaveSegmentsOfTheirOwnWhereThatSaves) {
   EXPECT_EQ(report.open_edges, lone_segments(field, plan));
   for (std::size_t t = 0; t < mesh.triangle_count(); t += 7) {
     const std::uint32_t patch = mesh.patches[t];
-    if (proven_mesh_of(plan).plan().segments()[patch].are_uniform()) continue;
+    if (proven_mesh_of(plan).plan().patches().segments[patch].are_uniform()) continue;
     EXPECT_LE(largest_distance(field.patch(patch), triangle_of(mesh, t), 0.1, 60).low, plan.bounds()[patch]);
   }
 }
@@ -177,7 +177,7 @@ TEST(Fewest, BoundsHoldOfEveryKindOfPatch) {
       exceeded += !(distance_to_triangle(p, at[0], at[1], at[2]) <= plan.bounds()[mesh.patches[t]]);
     }
     EXPECT_EQ(exceeded, 0u) << seed;
-    for (const PatchSegments& segments : proven_mesh_of(plan).plan().segments())
+    for (const PatchSegments& segments : proven_mesh_of(plan).plan().patches().segments)
       EXPECT_LE(std::max(segments.u.rate(), segments.v.rate()), max_rate) << seed;
   }
 }
@@ -191,7 +191,7 @@ TEST(Fewest, RatesGoNoFurtherThanTheirRange) {
   for (const bool share : {false, true}) {
     const Tessellation plan =
         good(Tessellation::make(set, {.tolerance = 1.478e-5, .share_vertices = share, .fewest = true}));
-    const PatchSegments segments = proven_mesh_of(plan).plan().segments()[0];
+    const PatchSegments segments = proven_mesh_of(plan).plan().patches().segments[0];
     EXPECT_GT(segments.v.rate(), 2000);
     EXPECT_LE(segments.v.rate(), max_rate);
     EXPECT_EQ(good(check(mesh_of(set, plan))).t_junctions, 0u);

@@ -76,7 +76,8 @@ std::size_t changed(const std::vector<BezierPatch>& patches, const Tessellation&
   const Tessellation part = local_decisions_planned(picked(patches, which), options);
   std::size_t count = 0;
   for (std::size_t k = 0; k < which.size(); ++k)
-    count += !(proven_mesh_of(part).plan().segments()[k] == proven_mesh_of(whole).plan().segments()[which[k]]) ||
+    count += !(proven_mesh_of(part).plan().patches().segments[k] ==
+               proven_mesh_of(whole).plan().patches().segments[which[k]]) ||
              !(proven_mesh_of(part).plan().division(k) == proven_mesh_of(whole).plan().division(which[k])) ||
              part.bounds()[k] != whole.bounds()[which[k]];
   return count;

@@ -11,6 +11,7 @@
 #include "kernel/table/kernel_table.h"
 #include "support/synthetic_sets.h"
 #include "tess/division_parameters.h"
+#include "tess/plan/make_plan.h"
 #include "tess/tessellate_support.h"
 #include "tessera/tessellation.h"
 
@@ -169,8 +170,8 @@ TEST(PatchWriter, VerticesLieOnTheirPatchesWithTheirNormals) {
 
 TEST(PatchWriter, TrianglesAreThoseOfTheDivisions) {
   for (const auto& [set, tolerance] : patch_writer_cases()) {
-    const CertifiedPlanner planner = good(CertifiedPlanner::make(impl_of(set), PlannerOptions{}, {}));
-    const CertifiedPlan plan = good(planner.plan(tolerance, std::uint64_t{1} << 30, {}));
+    const PlanFacts facts = good(find_plan_facts(impl_of(set), PlannerOptions{}, {}));
+    const CertifiedPlan plan = good(make_plan(facts, {tolerance}, {}));
     const Mesh mesh = patch_writer_mesh_of(set, tolerance);
     std::vector<std::uint32_t> expected(mesh.indices.size());
     for (std::size_t k = 0; k < plan.patch_count(); ++k)

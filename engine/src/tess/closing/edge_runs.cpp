@@ -102,6 +102,10 @@ bool are_in_step(const EdgeRuns& runs, const WholeBorder& a, const WholeBorder& 
 
 }  // namespace
 
+double same_share(const PatchSet::Impl& set, double tolerance) {
+  return std::clamp(0.05 * tolerance / set.model_box().diagonal(), least_same_share, largest_same_share);
+}
+
 std::size_t cell_of(std::span<const double> lines, double value) {
   const auto above = std::ranges::upper_bound(lines, value);
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - lines.begin() - 1, 0, std::ssize(lines) - 2));

@@ -44,6 +44,9 @@ struct CurveAlongEdge {
 /// Bounds on the share of an edge's range within which two parameters count as one. Faces of one edge rarely have equal
 /// parameters at one place; a vertex moves by as much along the edge.
 inline constexpr double least_same_share = 1e-9, largest_same_share = 1e-5;
+/// Returns that share for a tolerance. An edge is rarely longer than a few diagonals of the set, so vertices move by a
+/// small part of the tolerance.
+double same_share(const PatchSet::Impl& set, double tolerance);
 
 /// All runs of a set, edge by edge. They depend on the set's loops alone.
 class EdgeRuns {

@@ -37,7 +37,7 @@ class NotedEdits {
 
 Status ProvenMesh::start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
   if (Status status = check_followed(set, plan_.patch_count(), revision_); !status.ok()) return status;
-  if (Status status = check_updated_views(out, plan_.capacity(), plan_.has_f64_positions()); !status.ok())
+  if (Status status = check_updated_views(out, plan_.capacity(), plan_.patches().has_f64_positions); !status.ok())
     return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   PatchSet::Impl& inner = impl_of(set);
@@ -51,10 +51,10 @@ Status ProvenMesh::start(PatchSet& set, const PatchEdits& edits, const MeshViews
 Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution) {
   Result<PlannerOptions> planned = planner_options(options_, set);
   if (!planned) return planned.status();
-  planned->f64_patches.assign(plan_.f64_patches().begin(), plan_.f64_patches().end());
-  Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), *planned, {.cancel = execution.cancel});
-  if (!planner) return planner.status();
-  update_ = std::make_unique<PlanUpdate>(*std::move(planner), of(impl_of(set)));
+  planned->f64_patches.assign(plan_.patches().f64_patches.begin(), plan_.patches().f64_patches.end());
+  Result<PlanFacts> facts = find_plan_facts(impl_of(set), *planned, {.cancel = execution.cancel});
+  if (!facts) return facts.status();
+  update_ = std::make_unique<PlanUpdate>(*std::move(facts), of(impl_of(set)));
   return {};
 }
 
@@ -134,12 +134,12 @@ void ProvenMesh::touch_edited(const PatchSet::Impl& set) {
 
 Result<std::size_t> ProvenMesh::redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution) {
   // Borders that edits have moved apart are joined no longer once the topology is made anew: that needs new edges.
-  if (outcome == PlanUpdate::Outcome::redivided && update_->planner().edges_hold()) {
+  if (outcome == PlanUpdate::Outcome::redivided && update_->facts().borders.directions(update_->facts().needs).hold()) {
     CertifiedPlan plan = update_->redivided(of(impl_of(set)));
     const MeshCapacity size = plan.capacity();
     if (size.triangles <= options_.max_triangles && size.vertices <= max_vertices) {
-      ProvenMesh next(set, options_, tolerance_, std::move(plan), update_->planner(), isa_);
-      if (Status status = next.join(impl_of(set), update_->planner(), execution); !status.ok()) return status;
+      ProvenMesh next(set, options_, tolerance_, std::move(plan), update_->facts(), isa_);
+      if (Status status = next.join(impl_of(set), update_->facts(), execution); !status.ok()) return status;
       return replace(next);
     }
   }

@@ -13,6 +13,8 @@
 #include "tess/bounds/task_size.h"
 #include "tess/mesh/merged_mesh.h"
 #include "tess/plan/joins.h"
+#include "tess/plan/make_plan.h"
+#include "tess/plan/refusals.h"
 #include "tess/write/closed_vertices.h"
 #include "tess/write/cut_vertices.h"
 #include "tess/write/mesh_views.h"
@@ -40,11 +42,12 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
   if (set.cut_count() > 0) return refusal;  // to try is to cut patches into millions of cells
   planned.f64_positions = true;
   planned.f64_patches.assign(set.patch_count(), 1);
-  const Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), planned, {});
-  if (!planner) return planner.status();
-  const auto is_kept = [&](const Result<CertifiedPlan>& plan) { return plan && plan->beyond().empty(); };
-  const bool keeps = !planner->is_rough(tolerance) && is_kept(planner->plan(tolerance, options.max_triangles, {}));
-  const auto nearest = keeps ? std::optional<double>() : planner->nearest_tolerance(options.max_triangles);
+  const Result<PlanFacts> facts = find_plan_facts(impl_of(set), planned, {});
+  if (!facts) return facts.status();
+  const auto is_kept = [&](const Result<CertifiedPlan>& plan) { return plan && plan->patches().beyond.empty(); };
+  const PlanRequest request{tolerance, planned.fewest, {}, options.max_triangles};
+  const bool keeps = !is_rough(facts->needs, tolerance) && is_kept(make_limited_plan(*facts, request, {}));
+  const auto nearest = keeps ? std::optional<double>() : nearest_tolerance(*facts, options.max_triangles);
   if (!keeps && !nearest) return refusal;
   return {refusal.code(), refusal.message() + "; positions in double keep " + (keeps ? "it" : text(*nearest)),
           refusal.index()};
@@ -53,7 +56,7 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
 /// All that is found for a set and its options.
 struct Planned {
   double tolerance;
-  CertifiedPlanner planner;
+  PlanFacts facts;
   CertifiedPlan plan;
 };
 
@@ -63,31 +66,35 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
                          const KeptSegments& kept, const Execution& execution) {
   Result<PlannerOptions> planned = planner_options(options, set);
   if (!planned) return planned.status();
-  Result<CertifiedPlanner> planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
-  if (!planner) return planner.status();
+  Result<PlanFacts> facts = find_plan_facts(impl_of(set), *planned, execution);
+  if (!facts) return facts.status();
   const auto find_smallest = [&]() -> Status {
     if (!options.smallest) return {};
-    const Result<double> found = planner->smallest_tolerance(options.max_triangles, execution);
+    const Result<double> found = smallest_tolerance(*facts, options.max_triangles, execution);
     if (found) tolerance = *found;
     return found.status();
   };
   Status found = find_smallest();
-  if (!planned->f64_positions) planned->f64_patches = planner->patches_that_need_f64(tolerance);
+  if (!planned->f64_positions)
+    planned->f64_patches = patches_that_need_f64(facts->needs, facts->borders.edges(), tolerance);
   if (!planned->f64_positions && !planned->f64_patches.empty()) {
     // Doubles may keep a smaller tolerance than the one found, and other patches may need doubles for it.
     if (options.smallest) std::ranges::fill(planned->f64_patches, 1);
-    planner = CertifiedPlanner::make(impl_of(set), *planned, execution);
-    if (!planner) return planner.status();
+    facts = find_plan_facts(impl_of(set), *planned, execution);
+    if (!facts) return facts.status();
     found = find_smallest();
   }
   if (!found.ok()) return found;
-  Result<CertifiedPlan> plan = planner->plan(tolerance, options.max_triangles, execution, kept);
-  if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty())
-    plan = planner->plan(tolerance, options.max_triangles, execution);
-  if (plan) return Planned{tolerance, *std::move(planner), *std::move(plan)};
-  const bool is_rough = plan.status().code() == StatusCode::invalid_argument && planner->is_rough(tolerance);
-  return is_rough && !planned->f64_positions ? refused_in_float(plan.status(), set, *planned, tolerance, options)
-                                             : plan.status();
+  PlanRequest request{tolerance, planned->fewest, kept, options.max_triangles};
+  Result<CertifiedPlan> plan = make_limited_plan(*facts, request, execution);
+  if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty()) {
+    request.kept = {};
+    plan = make_limited_plan(*facts, request, execution);
+  }
+  if (plan) return Planned{tolerance, *std::move(facts), *std::move(plan)};
+  const bool is_refused = plan.status().code() == StatusCode::invalid_argument && is_rough(facts->needs, tolerance);
+  return is_refused && !planned->f64_positions ? refused_in_float(plan.status(), set, *planned, tolerance, options)
+                                               : plan.status();
 }
 
 }  // namespace
@@ -99,15 +106,15 @@ Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const 
   if (!isa) return isa.status();
   const Result<double> tolerance = before ? before->tolerance_ : tolerance_of(options, set);
   if (!tolerance) return tolerance.status();
-  const KeptSegments kept = before ? KeptSegments{before->plan_.segments(), options.spare} : KeptSegments{};
+  const KeptSegments kept = before ? KeptSegments{before->plan_.patches().segments, options.spare} : KeptSegments{};
   CallProgress progress(execution, planning_ends);
   Result<Planned> made = plan_for(set, options, *tolerance, kept, progress.loops());
   if (!made) return made.status();
   std::unique_ptr<ProvenMesh> mesh(
-      new ProvenMesh(set, options, made->tolerance, std::move(made->plan), made->planner, *isa));
-  if (Status status = mesh->join(impl_of(set), made->planner, progress.loops()); !status.ok()) return status;
+      new ProvenMesh(set, options, made->tolerance, std::move(made->plan), made->facts, *isa));
+  if (Status status = mesh->join(impl_of(set), made->facts, progress.loops()); !status.ok()) return status;
   if (before && !impl_of(set).trims && !mesh->plan_.closed())
-    mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->planner), mesh->of(impl_of(set)));
+    mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->facts), mesh->of(impl_of(set)));
   (void)progress.finish({});
   return mesh;
 }
@@ -126,34 +133,34 @@ Result<std::unique_ptr<Tessellation::Impl>> make_proven_mesh(const PatchSet& set
 }
 
 ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, double tolerance, CertifiedPlan plan,
-                       const CertifiedPlanner& planner, Isa isa)
+                       const PlanFacts& facts, Isa isa)
     : options_(options),
       tolerance_(tolerance),
       plan_(std::move(plan)),
-      shapes_(planner.shapes().begin(), planner.shapes().end()),
-      weld_(planner.weld()),
-      welded_borders_(planner.weld().joined_by_distance),
+      shapes_(facts.needs.shapes().begin(), facts.needs.shapes().end()),
+      weld_(facts.borders.weld()),
+      welded_borders_(facts.borders.weld().joined_by_distance),
       origin_(set.origin()),
       revision_(set.revision()),
       is_certified_(set.fit_error().certified),
       isa_(isa),
-      tables_(MeshTables::of(impl_of(set), plan_.divisions(), kernel::kernels(isa).mesh_points != nullptr)) {}
+      tables_(MeshTables::of(impl_of(set), plan_.patches().divisions, kernel::kernels(isa).mesh_points != nullptr)) {}
 
 Tessellation::Impl::Proof ProvenMesh::proof() const {
   return {.tolerance = tolerance_,
           .certified = is_certified_,
-          .bounds = plan_.bounds(),
-          .angles = plan_.angles(),
-          .pixels = plan_.pixels(),
+          .bounds = plan_.patches().bounds,
+          .angles = plan_.patches().angles,
+          .pixels = plan_.patches().pixels,
           .welded_borders = welded_borders_,
-          .open_edges = plan_.open_edges(),
-          .crossed = plan_.crossed(),
-          .beyond = plan_.beyond(),
+          .open_edges = plan_.patches().open_edges,
+          .crossed = plan_.patches().crossed,
+          .beyond = plan_.patches().beyond,
           .gap = plan_.closed() ? plan_.closed()->gap : 0,
           .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>()};
 }
 
-Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution) {
+Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution) {
   if (!options_.crease_angle && !options_.share_vertices) return {};
   Mesh mesh;  // written while each patch still has its own vertices
   MeshViews views;
@@ -167,7 +174,7 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const CertifiedPlanner& plann
     if (status.ok()) status = write_welded(weld_, plan_, set, views, quiet, [](std::size_t) { return true; });
     if (!status.ok()) return status;
   }
-  joins_ = find_joins(set, plan_, planner.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
+  joins_ = find_joins(set, plan_, facts.borders.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
                       options_.crease_angle.value_or(0));
   if (!options_.share_vertices) return {};
   plan_.share(joins_);
@@ -196,7 +203,7 @@ void ProvenMesh::weld_shared_corners() {
 Mesh ProvenMesh::allocate() const {
   Mesh mesh = empty_mesh(capacity(), origin_);
   if (!has_normals()) mesh.normals.clear();
-  if (plan_.has_f64_positions()) mesh.positions_f64.resize(mesh.positions.size());
+  if (plan_.patches().has_f64_positions) mesh.positions_f64.resize(mesh.positions.size());
   return mesh;
 }
 
@@ -214,10 +221,10 @@ Status ProvenMesh::write_copies(const PatchSet::Impl& set, const MeshViews& out,
 }
 
 Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-  if (Status status = check_views(out, capacity(), plan_.has_f64_positions()); !status.ok()) return status;
+  if (Status status = check_views(out, capacity(), plan_.patches().has_f64_positions); !status.ok()) return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  if (!plan_.has_trims_of(impl_of(set)))
+  if (plan_.patches().trims != impl_of(set).trims)
     return {StatusCode::stale, "the plan was made for a set that other trimming loops cut"};
   const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };

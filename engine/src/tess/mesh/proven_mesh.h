@@ -12,7 +12,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Checks the options, except rates, and turns them into those of a planner. Errors: invalid_argument.
+/// Checks the options, except rates, and turns them into those of planning. Errors: invalid_argument.
 Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set);
 /// Returns the distance that checked options ask for, infinite if there is none. Errors: invalid_argument (the set has
 /// no size that it could be a share of).
@@ -28,7 +28,7 @@ class ProvenMesh final : public Tessellation::Impl {
 
   const CertifiedPlan& plan() const { return plan_; }
   const MeshTables& tables() const { return *tables_; }
-  bool has_f64_positions() const { return plan_.has_f64_positions(); }
+  bool has_f64_positions() const { return plan_.patches().has_f64_positions; }
   double tolerance() const { return tolerance_; }  ///< the distance to keep, infinite if there is no limit
 
   Proof proof() const override;
@@ -44,13 +44,13 @@ class ProvenMesh final : public Tessellation::Impl {
 
  private:
   ProvenMesh(const PatchSet& set, const TessellationOptions& options, double tolerance, CertifiedPlan plan,
-             const CertifiedPlanner& planner, Isa isa);
+             const PlanFacts& facts, Isa isa);
 
   bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
   /// Checks that normals and quads are only written if there are any. Errors: invalid_argument.
   Status check_attributes(const MeshViews& out) const;
   /// Finds what neighbours share, if anything. Errors: cancelled.
-  Status join(const PatchSet::Impl& set, const CertifiedPlanner& planner, const Execution& execution);
+  Status join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution);
   /// Lists the welded positions of corners by the vertices that are stored: of each that is moved, all corners that
   /// share it, and the corner that owns the vertex where it goes.
   void weld_shared_corners();

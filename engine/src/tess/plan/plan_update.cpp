@@ -5,7 +5,9 @@
 #include <cassert>
 
 #include "parallel/parallel_for.h"
+#include "tess/bounds/rounded_up.h"
 #include "tess/bounds/task_size.h"
+#include "tess/plan/divide_patches.h"
 
 namespace tessera { inline namespace abi_0_1 {
 void PlanUpdate::Lanes::add(PatchSet::Slot slot) {
@@ -18,18 +20,17 @@ void PlanUpdate::Lanes::clear() {
   blocks.clear();
 }
 
-PlanUpdate::PlanUpdate(CertifiedPlanner planner, const PlanOfSet& of)
-    : planner_(std::move(planner)),
+PlanUpdate::PlanUpdate(PlanFacts facts, const PlanOfSet& of)
+    : facts_(std::move(facts)),
       touched_(of.set.lane_counts.size()),
-      copied_(of.plan.shares_vertices() || !planner_.weld().displacements.empty() ? touched_.bits.size() : 0),
+      copied_(of.plan.shares_vertices() || !facts_.borders.weld().displacements.empty() ? touched_.bits.size() : 0),
       own_roundings_(copied_.bits.empty() ? 0 : of.set.patches.size()),
       displacements_(own_roundings_.size(), 0.0),
       proven_(of.set.patches.size()) {
-  planner_.turnings_ = {};  // bounds of edited patches are found anew
-  std::ranges::copy(planner_.weld().displacements, displacements_.begin());
+  std::ranges::copy(facts_.borders.weld().displacements, displacements_.begin());
   for (std::size_t patch = 0; patch < own_roundings_.size(); ++patch)
     own_roundings_[patch] =
-        planner_.own_rounding(of.set.group_of_block(of.set.slots[patch].block), of.set.slots[patch]);
+        facts_.needs.own_rounding(of.set.group_of_block(of.set.slots[patch].block), of.set.slots[patch]);
 }
 
 void PlanUpdate::begin() {
@@ -49,9 +50,9 @@ void PlanUpdate::for_proven(const PatchSet::Impl& set, Visit visit) const {
 
 Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<void(std::uint32_t block)> pack,
                                               const Execution& execution) {
-  planner_.set_ = &of.set;
+  facts_.needs.follow(of.set);
   is_redivided_ = false;
-  is_unknown_ = moves_line_patches(of) || !of.plan.beyond().empty();
+  is_unknown_ = moves_line_patches(of) || !of.plan.patches().beyond.empty();
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (const std::uint32_t block : std::span(touched_.blocks).subspan(begin, end - begin)) {
       pack(block);
@@ -74,25 +75,29 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
 }
 
 bool PlanUpdate::moves_line_patches(const PlanOfSet& of) const {
-  return std::ranges::any_of(of.plan.line_patches(), [&](const CertifiedPlan::LinePatch& line) {
+  return std::ranges::any_of(of.plan.patches().lines, [&](const DividedPatches::LinePatch& line) {
     return line.holder == no_id || is_touched(of.set, line.patch) || is_touched(of.set, line.holder);
   });
 }
 
 void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
-  const double most = CertifiedPlanner::max_rounding * of.tolerance;  // beyond it other patches need doubles
+  const double most = max_rounding * of.tolerance;  // beyond it other patches need doubles
   const BlockGroup& group = of.set.group_of_block(block);
-  planner_.chords_.bound(of.set, block, touched_.bits[block]);
+  PatchNeeds& needs = facts_.needs;
+  needs.bound_chords(block, touched_.bits[block]);
   for (std::uint32_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
     if (!(touched_.bits[block] >> lane & 1u)) continue;
     const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
-    const double rounding = planner_.own_rounding(group, {block, lane});
-    (has_copies() ? own_roundings_ : planner_.roundings_)[patch] = rounding;
-    const PatchShape& shape = planner_.shapes_[patch];
+    const double rounding = needs.own_rounding(group, {block, lane});
+    if (has_copies())
+      own_roundings_[patch] = rounding;
+    else
+      needs.set_rounding(patch, rounding);
+    const PatchShape& shape = needs.shapes()[patch];
     const EdgeMask collapsed = of.set.collapsed[patch];
     const bool keeps_shape = collapsed.any() ? PatchShape::of(of.set.patches[patch], collapsed) == shape
                                              : !shape.collapsed.any() && !shape.is_curve;
-    if (!keeps_shape || !(rounding <= most || planner_.is_f64(patch))) is_unknown_ = true;
+    if (!keeps_shape || !(rounding <= most || needs.is_f64(patch))) is_unknown_ = true;
   }
 }
 
@@ -119,37 +124,37 @@ void PlanUpdate::measure_copies(const PlanOfSet& of) {
   if (of.plan.shares_vertices())
     measure_displacements(of.set, of.joins, own_roundings_, is_copied, displacements_, true);
   for_proven(of.set, [&](std::size_t patch) {
-    planner_.roundings_[patch] = std::max(own_roundings_[patch], displacements_[patch]);
+    facts_.needs.set_rounding(patch, std::max(own_roundings_[patch], displacements_[patch]));
   });
 }
 
 void PlanUpdate::choose(const PlanOfSet& of, std::uint32_t block, std::uint32_t wanted) {
-  if (!planner_.options_.angle && !planner_.options_.camera) return choose_by_distance(of, block, wanted);
-  if (planner_.options_.camera) planner_.bound_pictures(block);
-  CertifiedPlanner::Request request{of.tolerance, planner_.options_.fewest};
-  request.kept = {of.plan.segments(), of.spare};
+  const PlannerOptions& options = facts_.needs.options();
+  if (!options.angle && !options.camera) return choose_by_distance(of, block, wanted);
+  if (options.camera) facts_.needs.bound_pictures(block);
+  const PlanRequest request{of.tolerance, options.fewest, {of.plan.patches().segments, of.spare}};
   for (std::size_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
     if (!(wanted >> lane & 1u)) continue;
     const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
-    const CertifiedPlanner::Choice choice = planner_.choose(patch, request, max_rate);
-    if (choice.failure != CertifiedPlanner::Failure::none) is_unknown_ = true;
-    if (!choice.anywhere && of.plan.straddles_[patch]) is_redivided_ = true;
+    const NeededSegments needed = facts_.needs.segments_for(patch, request, max_rate);
+    if (!needed.are_found()) is_unknown_ = true;
+    if (!needed.anywhere && of.plan.patches().straddles[patch]) is_redivided_ = true;
     set(of, patch,
-        {choice.segments, choice.anywhere, rounded_up(choice.bound), rounded_up(choice.angle),
-         rounded_up(choice.pixels)});
+        {needed.segments, needed.anywhere, rounded_up(needed.bound), rounded_up(needed.angle),
+         rounded_up(needed.pixels)});
   }
 }
 
 void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, std::uint32_t wanted) {
   const std::size_t count = of.set.lane_counts[block];
   const std::uint32_t* const patches = of.set.lane_patches.data() + block * std::size_t{PatchSet::lanes};
-  const KeptSegments kept{of.plan.segments(), of.spare};
+  const PatchNeeds& needs = facts_.needs;
+  const KeptSegments kept{of.plan.patches().segments, of.spare};
   ChordBlocks::Lanes<double> left;
   left.fill(of.tolerance);
-  for (std::size_t lane = 0; lane < count; ++lane)
-    left[lane] = of.tolerance - (planner_.roundings_[patches[lane]] + planner_.fit_error_);
+  for (std::size_t lane = 0; lane < count; ++lane) left[lane] = of.tolerance - needs.given(patches[lane]);
   ChordBlocks::Products products;
-  const ChordBlocks::Choice best = planner_.chords_.cheapest(of.set, block, count, left, max_rate, products);
+  const ChordBlocks::Choice best = needs.chords().cheapest(of.set, block, count, left, max_rate, products);
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (!(wanted >> lane & 1u)) continue;
     const std::size_t patch = patches[lane];
@@ -159,20 +164,20 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
     }
     const ChordBlocks::Products* const sharp = best.sharpened >> lane & 1u ? &products : nullptr;
     const ProvenSegments proven =
-        planner_.keep_by_distance(patch, left[lane], kept, sharp, {best.rates[lane], best.distance[lane]});
+        keep_by_distance(needs, patch, left[lane], kept, sharp, {best.rates[lane], best.distance[lane]});
     // If its segments change, its borders do, and redivided() proves them.
-    const bool is_kept = proven.segments == of.plan.segments()[patch];
+    const bool is_kept = proven.segments == of.plan.patches().segments[patch];
     const double straddling = proven.anywhere || !is_kept ? 0 : straddling_distance(of, patch);
     if (!(straddling <= left[lane])) is_redivided_ = true;
     const double given = of.tolerance - left[lane];
     set(of, patch, {proven.segments, proven.anywhere, rounded_up(std::max(proven.distance, straddling) + given)});
   }
   // The fewest segments are chosen for all patches together.
-  if (planner_.options_.fewest && is_redivided_) is_unknown_ = true;
+  if (needs.options().fewest && is_redivided_) is_unknown_ = true;
 }
 
 double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) const {
-  const PatchSegments segments = of.plan.segments()[patch];
+  const PatchSegments segments = of.plan.patches().segments[patch];
   const Division& division = of.plan.division(patch);
   double most = 0;
   for (const Side side : all_sides) {
@@ -184,41 +189,41 @@ double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) c
     assert(segments.are_uniform());  // if they are not, the border has a point at 1/2
     const auto [piece, rates] = ChordBound::straddling(segments.rates(), edge_of(side), rate);
     const PatchSet::Slot slot = of.set.slots[patch];
-    most = std::max(most, planner_.chords_.piece(slot.block, slot.lane, piece).chord(rates));
+    most = std::max(most, facts_.needs.chords().piece(slot.block, slot.lane, piece).chord(rates));
   }
   return most;
 }
 
 void PlanUpdate::set(const PlanOfSet& of, std::size_t patch, const Proven& proven) {
   proven_[patch] = proven;
-  if (!(proven.segments == of.plan.segments()[patch])) is_redivided_ = true;
+  if (!(proven.segments == of.plan.patches().segments[patch])) is_redivided_ = true;
 }
 
 void PlanUpdate::take_bounds(CertifiedPlan& plan) const {
-  for_proven(*planner_.set_, [&](std::size_t patch) {
-    plan.bounds_[patch] = proven_[patch].bound;
-    if (!plan.angles_.empty()) plan.angles_[patch] = proven_[patch].angle;
-    if (!plan.pixels_.empty()) plan.pixels_[patch] = proven_[patch].pixels;
+  for_proven(facts_.needs.set(), [&](std::size_t patch) {
+    plan.set_bounds(patch, proven_[patch].bound, proven_[patch].angle, proven_[patch].pixels);
   });
 }
 
 CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
-  CertifiedPlan plan;
-  plan.set_f64_patches(of.plan.f64_patches());
-  plan.has_f64_positions_ = of.plan.has_f64_positions_;
-  plan.segments_ = of.plan.segments_;
-  plan.bounds_ = of.plan.bounds_;
-  plan.angles_ = of.plan.angles_;
-  plan.pixels_ = of.plan.pixels_;
-  plan.straddles_ = of.plan.straddles_;
-  take_bounds(plan);
+  const DividedPatches& before = of.plan.patches();
+  DividedPatches patches{.f64_patches = before.f64_patches,
+                         .has_f64_positions = before.has_f64_positions,
+                         .segments = before.segments,
+                         .bounds = before.bounds,
+                         .angles = before.angles,
+                         .pixels = before.pixels,
+                         .straddles = before.straddles};
   for_proven(of.set, [&](std::size_t patch) {
-    plan.segments_[patch] = proven_[patch].segments;
-    if (!plan.straddles_.empty()) plan.straddles_[patch] = proven_[patch].anywhere;
+    const Proven& proven = proven_[patch];
+    patches.segments[patch] = proven.segments;
+    patches.bounds[patch] = proven.bound;
+    if (!patches.angles.empty()) patches.angles[patch] = proven.angle;
+    if (!patches.pixels.empty()) patches.pixels[patch] = proven.pixels;
+    if (!patches.straddles.empty()) patches.straddles[patch] = proven.anywhere;
   });
-  planner_.divide(of.tolerance, plan);
-  plan.lay_out();
-  return plan;
+  divide_patches(facts_, of.tolerance, patches);
+  return CertifiedPlan(std::move(patches));
 }
 
 }}  // namespace tessera::abi_0_1

@@ -8,6 +8,7 @@
 
 #include "base/function_ref.h"
 #include "tess/plan/certified_plan.h"
+#include "tess/plan/plan_facts.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -22,12 +23,12 @@ struct PlanOfSet {
 };
 
 /// The bounds of all patches of a set, kept for edits. Holds memory for all patches, so that repeated proofs of
-/// distances allocate nothing. Edges and welds are those of the planner.
+/// distances allocate nothing. Edges and welds are those of the facts.
 class PlanUpdate {
  public:
-  PlanUpdate(CertifiedPlanner planner, const PlanOfSet& of);
+  PlanUpdate(PlanFacts facts, const PlanOfSet& of);
 
-  const CertifiedPlanner& planner() const { return planner_; }
+  const PlanFacts& facts() const { return facts_; }
 
   /// Forgets the patches of the last proof.
   void begin();
@@ -39,7 +40,7 @@ class PlanUpdate {
   enum class Outcome : std::uint8_t {
     kept,       ///< the plan's segments keep the tolerances
     redivided,  ///< some patches need other segments
-    unknown,  ///< only a new planner can tell: shapes, the source of vertices or welds must change, or nothing suffices
+    unknown,    ///< only new facts can tell: shapes, the source of vertices or welds must change, or nothing suffices
   };
   /// Proves the touched patches, and those that take vertices from them. `pack`: packs the new control points of a
   /// block; called from any thread, once for each block of touched patches. Errors: cancelled.
@@ -80,7 +81,7 @@ class PlanUpdate {
   template <class Visit>
   void for_proven(const PatchSet::Impl& set, Visit visit) const;
 
-  CertifiedPlanner planner_;
+  PlanFacts facts_;
   Lanes touched_;
   Lanes copied_;                       ///< touched patches, and those that copy vertices; unused without copies
   std::vector<double> own_roundings_;  ///< `[patch]`: roundings of its vertices before welding; empty without copies

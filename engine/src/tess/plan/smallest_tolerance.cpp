@@ -6,7 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "tess/plan/certified_plan.h"
+#include "block/patch_trims.h"
+#include "tess/plan/make_plan.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -27,7 +28,7 @@ std::uint64_t least_triangles(const CertifiedPlan& plan) {
   for (const CutPatch& cut : plan.cuts()) least += cut.triangles.size() / 2;
   for (std::size_t k = 0; k < plan.patch_count(); ++k) {
     if (plan.division(k).triangle_count() == 0) continue;
-    const auto [u, v] = plan.segments()[k].rates();
+    const auto [u, v] = plan.patches().segments[k].rates();
     const auto cells = std::uint64_t(u) * std::uint64_t(v);
     // Each of two poles turns the cells beside it into triangles; a flat quadrilateral takes two triangles in all.
     const std::uint64_t lost = 2 * std::uint64_t(std::max(u, v));
@@ -38,25 +39,28 @@ std::uint64_t least_triangles(const CertifiedPlan& plan) {
 
 }  // namespace
 
-Result<double> CertifiedPlanner::smallest_tolerance(std::uint64_t max_triangles, const Execution& execution) const {
+Result<double> smallest_tolerance(const PlanFacts& facts, std::uint64_t max_triangles, const Execution& execution) {
+  const PatchNeeds& needs = facts.needs;
+  const bool is_fewest = needs.options().fewest;
   // One cell per patch keeps `high`; vertices cannot keep less than `low`.
   double low = 0, high = 0;
-  for (std::size_t k = 0; k < shapes_.size(); ++k) {
-    const double given = roundings_[k] + fit_error_;
+  for (std::size_t k = 0; k < needs.shapes().size(); ++k) {
+    const double given = needs.given(k);
     low = std::max(low, given);
-    high = std::max(high, 1.001 * (given + chord(k).distance({1, 1})));
+    high = std::max(high, 1.001 * (given + needs.chord(k).distance({1, 1})));
   }
   high = std::max(high, 1.001 * low);
-  if (set_->trims) high = std::max(high, set_->model_box().diagonal());  // loops need segments of their own
-  if (Result<CertifiedPlan> plan = this->plan(high, max_triangles, execution); !plan) return plan.status();
+  if (needs.set().trims) high = std::max(high, needs.set().model_box().diagonal());  // loops need segments of their own
+  const PlanRequest coarsest{.tolerance = high, .fewest = is_fewest, .max_triangles = max_triangles};
+  if (Result<CertifiedPlan> plan = make_limited_plan(facts, coarsest, execution); !plan) return plan.status();
 
   // A cut patch with more than twice the triangles may not fit below either: see least_triangles().
   const std::uint64_t max_of_patch = 2 * std::min(max_triangles, std::numeric_limits<std::uint64_t>::max() / 2);
   const auto fit = [&](int step) -> Result<Fit> {
-    const Request request{.tolerance = tolerance_of(step), .fewest = options_.fewest, .max_triangles = max_of_patch};
-    const Result<CertifiedPlan> plan = leaner_plan(request, execution);
+    const PlanRequest request{.tolerance = tolerance_of(step), .fewest = is_fewest, .max_triangles = max_of_patch};
+    const Result<CertifiedPlan> plan = make_leaner_plan(facts, request, execution);
     if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
-    if (!plan || !plan->beyond().empty()) return Fit{};
+    if (!plan || !plan->patches().beyond.empty()) return Fit{};
     const MeshCapacity size = plan->capacity();
     return Fit{size.triangles <= max_triangles && size.vertices <= max_vertices,
                least_triangles(*plan) <= max_triangles};

@@ -32,7 +32,7 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && plan.f64_patches().empty() &&
+  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && plan.patches().f64_patches.empty() &&
                plan.cuts().empty() && !plan.closed() && out.quads.empty() && is_packed(out.position) &&
                (out.normal.empty() || is_packed(out.normal));
 }
@@ -67,7 +67,7 @@ void PatchWriter::write(std::size_t begin, std::size_t end) const {
 }
 
 void PatchWriter::write_vertices(std::size_t k, std::size_t end, VertexJob& vertices) const {
-  if (plan_.has_f64_positions()) return write_f64(k);
+  if (plan_.patches().has_f64_positions) return write_f64(k);
   prepare(k, vertices);
   const std::size_t first = plan_.first_vertex(k);
   set_records(vertices.job.position, out_.position, first);
@@ -81,7 +81,7 @@ void PatchWriter::write_f64(std::size_t k) const {
   const BezierPatch& patch = set_.patches[k];
   const F64Points points(patch, set_.origin);
   const Division& division = plan_.division(k);
-  const bool normals = plan_.has_f64_positions() && !out_.normal.empty();
+  const bool normals = plan_.patches().has_f64_positions && !out_.normal.empty();
   std::size_t vertex = plan_.first_vertex(k), place = 0;  // numbers in the mesh, and among all vertices of the division
   const auto put = [&](const Vec3& p) {
     if (!out_.position.empty()) put_vector(out_.position, vertex, p);

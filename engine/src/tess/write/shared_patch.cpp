@@ -24,7 +24,7 @@ void restrict_to(const Division& part, VertexJob& vertices) {
 }  // namespace
 
 void PatchWriter::write_owned(std::size_t k, VertexJob& vertices) const {
-  if (plan_.has_f64_positions()) return write_f64(k);
+  if (plan_.patches().has_f64_positions) return write_f64(k);
   const Division& division = plan_.division(k);
   Division part = division;
   if (division.has_inner_points()) {

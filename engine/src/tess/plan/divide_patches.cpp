@@ -1,14 +1,14 @@
-// Chooses the rates of borders: one for all patches that meet there.
+#include "tess/plan/divide_patches.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <utility>
-#include <vector>
 
+#include "block/patch_trims.h"
+#include "tess/bounds/rounded_up.h"
 #include "tess/edges/edge_needs.h"
 #include "tess/edges/short_sides.h"
-#include "tess/plan/certified_plan.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -16,30 +16,18 @@ namespace {
 /// At higher rates of a patch, an odd border rate instead of the next even one saves too little to look for.
 constexpr int max_to_straddle = 2;
 
-}  // namespace
-
-EdgeDirections CertifiedPlanner::edge_directions() const { return {*set_, edges_, weld_, divided_shapes(), shapes_}; }
-
-std::vector<std::uint8_t> CertifiedPlanner::borders_against() const {
-  const EdgeDirections directions = edge_directions();
-  std::vector<std::uint8_t> against(4 * shapes_.size(), 0);
-  for (std::uint32_t border = 0; border < against.size(); ++border)
-    if (!shapes_[border / 4].is_curve) against[border] = directions.runs_against_leading(border);
-  return against;
-}
-
-double CertifiedPlanner::straddling_distance(std::size_t patch, Side side, const CertifiedPlan& plan) const {
+/// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along it
+/// has a bound of halves.
+double straddling_distance(const PatchNeeds& needs, PatchSegments segments, std::size_t patch, Side side) {
   // The border has an odd number of segments, more than the patch needs, so its middle segment crosses the middle of the
   // patch. Without inner points between them, the opposite border's may cross it too. That border is taken to have an odd
   // number as well: its real rate depends on patches that this one does not touch.
-  assert(plan.segments_[patch].are_uniform());  // only patches of at most max_to_straddle segments come here
-  const int rate = along(plan.segments_[patch], side).rate() + 1;
-  const auto [piece, rates] = ChordBound::straddling(plan.segments_[patch].rates(), edge_of(side), rate);
-  const PatchSet::Slot slot = set_->slots[patch];
-  return chords_.piece(slot.block, slot.lane, piece).chord(rates) + (roundings_[patch] + fit_error_);
+  assert(segments.are_uniform());  // only patches of at most max_to_straddle segments come here
+  const int rate = along(segments, side).rate() + 1;
+  const auto [piece, rates] = ChordBound::straddling(segments.rates(), edge_of(side), rate);
+  const PatchSet::Slot slot = needs.set().slots[patch];
+  return needs.chords().piece(slot.block, slot.lane, piece).chord(rates) + needs.given(patch);
 }
-
-namespace {
 
 /// Chooses the segments of all borders from those that the patches need for themselves.
 class BorderSegments {
@@ -158,20 +146,56 @@ std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& bor
   return accepted;
 }
 
+/// Whether welding made a patch a point, and a neighbour has triangles there.
+bool is_welded_spot(const PatchNeeds& needs, std::size_t patch, const DividedPatches& patches) {
+  // Welding makes such a patch a point only where a neighbour has this point, see weld_borders().
+  return patches.divisions[patch].has_one_corner() && !needs.shapes()[patch].collapsed.any() &&
+         patches.segments[patch] == PatchSegments{1, 1} &&
+         is_needle(needs.set().patches[patch], Side::v0, needs.options().weld.reach);
+}
+
+/// Gives triangles to patches without any, unless those of a neighbour show what is left of them.
+void keep_from_vanishing(const PlanFacts& facts, DividedPatches& patches) {
+  const SharedEdges& edges = facts.borders.edges();
+  std::vector<Division>& divisions = patches.divisions;
+  std::vector<std::uint32_t> without;  // patches of an area without triangles
+  for (std::uint32_t k = 0; k < divisions.size(); ++k)
+    if (const Division& of = divisions[k]; of.collapsed.any() && !of.empty && of.triangle_count() == 0)
+      without.push_back(k);
+  patches.lines.clear();
+  if (without.empty()) return;
+  std::vector<std::uint32_t> holders(edges.count(), no_id);  // `[edge]`: a patch with triangles
+  for (std::uint32_t k = 0; k < divisions.size(); ++k)
+    for (const Side side : all_sides)
+      if (const std::uint32_t edge = edges.edge(k, side); edge != no_id && divisions[k].triangle_count() > 0)
+        holders[edge] = k;
+  for (const std::uint32_t k : without) {
+    std::uint32_t holder = no_id;
+    for (const Side side : all_sides)
+      if (const std::uint32_t edge = edges.edge(k, side); edge != no_id && holder == no_id) holder = holders[edge];
+    if (holder == no_id && !is_welded_spot(facts.needs, k, patches)) {
+      divisions[k].add_inner_points(patches.segments[k]);
+    } else {
+      patches.lines.push_back({k, holder});
+    }
+  }
+}
+
 }  // namespace
 
-void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
-  const std::span<const PatchShape> shapes = divided_shapes();
-  const std::span<const PatchSegments> segments = plan.segments_;
+void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& patches) {
+  const PatchSet::Impl& set = facts.needs.set();
+  const std::span<const PatchShape> shapes = facts.borders.shapes(facts.needs);
+  const std::span<const PatchSegments> segments = patches.segments;
   // Only distances are known for triangles that cross the middle; angles and pixels hold for halves.
-  const bool by_distance = !options_.angle && !options_.camera;
+  const bool by_distance = patches.angles.empty() && patches.pixels.empty();
   const auto is_coarse = [&](std::size_t k) {
     return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
   };
-  const std::uint8_t *const straddles = plan.straddles_.empty() ? nullptr : plan.straddles_.data(),
-                            *const cuts = set_->trims ? set_->trims->is_cut.data() : nullptr;
+  const std::uint8_t *const straddles = patches.straddles.empty() ? nullptr : patches.straddles.data(),
+                            *const cuts = set.trims ? set.trims->is_cut.data() : nullptr;
   const auto always_straddles = [straddles](std::size_t k) { return straddles && straddles[k]; };
-  BorderSegments borders(segments, edges_);
+  BorderSegments borders(segments, facts.borders.edges());
   bool are_uniform = true;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const bool is_cut = cuts && cuts[k];
@@ -179,57 +203,25 @@ void CertifiedPlanner::divide(double tolerance, CertifiedPlan& plan) const {
       borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_straddles(k)));
     are_uniform &= segments[k].are_uniform();
   }
-  if (!are_uniform) borders.part(borders_against());
-  borders.share(edges_in_step_);
+  if (!are_uniform) borders.part(facts.borders.against(facts.needs));
+  borders.share(facts.borders.in_step());
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
       for (const Side side : all_sides) {
         if (!borders.is_even_edge(k, side)) continue;
         if (!borders.of(k)[static_cast<std::size_t>(side)].parts_halves())
-          visit(k, side, straddling_distance(k, side, plan));
+          visit(k, side, straddling_distance(facts.needs, segments[k], k, side));
       }
     }
   };
   for (const auto& [k, distance] : make_refused_even(borders, tolerance, for_odd_borders))
-    plan.bounds_[k] = std::max(plan.bounds_[k], distance);
-  plan.divisions_.reserve(segments.size());
+    patches.bounds[k] = std::max(patches.bounds[k], distance);
+  patches.divisions.reserve(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k)
-    plan.divisions_.emplace_back().set(shapes[k], segments[k], borders.of(k));
-  plan.open_edges_ = borders.open_edges();
-  keep_from_vanishing(plan);
-}
-
-bool CertifiedPlanner::is_welded_spot(std::size_t patch, const CertifiedPlan& plan) const {
-  // Welding makes such a patch a point only where a neighbour has this point, see weld_borders().
-  return plan.divisions_[patch].has_one_corner() && !shapes_[patch].collapsed.any() &&
-         plan.segments_[patch] == PatchSegments{1, 1} && is_needle(set_->patches[patch], Side::v0, options_.weld.reach);
-}
-
-void CertifiedPlanner::keep_from_vanishing(CertifiedPlan& plan) const {
-  std::vector<std::uint32_t> without;  // patches of an area without triangles
-  for (std::uint32_t k = 0; k < plan.divisions_.size(); ++k)
-    if (const Division& of = plan.divisions_[k]; of.collapsed.any() && !of.empty && of.triangle_count() == 0)
-      without.push_back(k);
-  plan.set_line_patches({});
-  if (without.empty()) return;
-  std::vector<std::uint32_t> holders(edges_.count(), no_id);  // `[edge]`: a patch with triangles
-  for (std::uint32_t k = 0; k < plan.divisions_.size(); ++k)
-    for (const Side side : all_sides)
-      if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && plan.divisions_[k].triangle_count() > 0)
-        holders[edge] = k;
-  std::vector<CertifiedPlan::LinePatch> lines;
-  for (const std::uint32_t k : without) {
-    std::uint32_t holder = no_id;
-    for (const Side side : all_sides)
-      if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && holder == no_id) holder = holders[edge];
-    if (holder == no_id && !is_welded_spot(k, plan)) {
-      plan.divisions_[k].add_inner_points(plan.segments_[k]);
-    } else {
-      lines.push_back({k, holder});
-    }
-  }
-  plan.set_line_patches(std::move(lines));
+    patches.divisions.emplace_back().set(shapes[k], segments[k], borders.of(k));
+  patches.open_edges = borders.open_edges();
+  keep_from_vanishing(facts, patches);
 }
 
 }}  // namespace tessera::abi_0_1

@@ -1,0 +1,49 @@
+#pragma once
+// What the patches of a set agree on along their borders, whatever the tolerance is.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tess/closing/edge_runs.h"
+#include "tess/edges/edge_directions.h"
+#include "tess/edges/shared_edges.h"
+#include "tess/edges/weld.h"
+#include "tess/plan/patch_needs.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// The edges that borders share, the borders that are welded, and the shapes that patches have then.
+class Borders {
+ public:
+  Borders() = default;
+  /// Welds the borders by the options of `needs`. `edges`: of the set, before welding; `runs`: null if edges of shapes
+  /// stay open.
+  Borders(const PatchNeeds& needs, SharedEdges edges, const EdgeRuns* runs);
+
+  const SharedEdges& edges() const { return edges_; }  ///< after welding
+  const Weld& weld() const { return weld_; }
+  /// The shapes by which patches are divided: those after welding; cut patches have no area.
+  std::span<const PatchShape> shapes(const PatchNeeds& needs) const {
+    return !weld_.shapes.empty() ? weld_.shapes : drawn_.empty() ? needs.shapes() : drawn_;
+  }
+  /// Groups of edges that should have as many segments, because they lie along one edge of a shape.
+  std::span<const std::vector<std::uint32_t>> in_step() const { return in_step_; }
+  /// Returns the directions of borders along their edges. The set must be as it was when the edges were found.
+  EdgeDirections directions(const PatchNeeds& needs) const {
+    return {needs.set(), edges_, weld_, shapes(needs), needs.shapes()};
+  }
+  /// Returns for each border whether it runs against the leading border of its edge. Requires directions().hold().
+  std::vector<std::uint8_t> against(const PatchNeeds& needs) const;
+
+ private:
+  void weld_by(const PatchNeeds& needs, const EdgeRuns* runs);
+  void find_in_step(const PatchSet::Impl& set, const EdgeRuns& runs);
+
+  SharedEdges edges_;
+  Weld weld_;
+  std::vector<PatchShape> drawn_;  ///< `[patch]`: cut ones are curves; empty if no patch is cut
+  std::vector<std::vector<std::uint32_t>> in_step_;
+};
+
+}}  // namespace tessera::abi_0_1

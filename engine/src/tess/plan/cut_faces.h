@@ -1,0 +1,24 @@
+#pragma once
+// The faces of a set whose loops cut patches, and the runs of loops along edges of shapes.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "block/patch_set_impl.h"
+#include "tess/closing/edge_runs.h"
+#include "tess/trimmed/cut_patch.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// What cutting and closing take from the set's loops, whatever the tolerance is.
+struct CutFaces {
+  /// `closes_edges`: whether faces are to get the same vertices along edges. The set must outlive the result.
+  static CutFaces of(const PatchSet::Impl& set, bool closes_edges);
+
+  std::vector<FaceSides> sides;        ///< by region of the set's trims
+  std::optional<EdgeRuns> runs;        ///< if edges are closed
+  std::vector<std::uint32_t> of_cuts;  ///< by cut patch: into PatchEdges::faces, or no_id; empty without runs
+};
+
+}}  // namespace tessera::abi_0_1
