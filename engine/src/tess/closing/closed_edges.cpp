@@ -8,7 +8,7 @@
 
 #include "base/union_find.h"
 #include "tess/bounds/rounded_up.h"
-#include "tess/closing/edge_points.h"
+#include "tess/closing/station_vertices.h"
 #include "tess/trimmed/patch_points.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -34,23 +34,21 @@ std::uint32_t first_at_pole(const Division& division, std::uint32_t vertex) {
 
 class Closer {
  public:
-  Closer(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions, std::span<CutPatch> cuts,
-         const EdgeStops* stops, FunctionRef<ChordBound(std::uint32_t)> chord, const std::atomic<bool>* cancel)
-      : cancel_(cancel),
-        set_(set),
-        chord_(chord),
-        divisions_(divisions),
-        cuts_(cuts),
-        segments_(set, runs, divisions, cuts, stops),
-        runs_(runs) {}
+  explicit Closer(const DividedFaces& faces)
+      : of_(faces),
+        set_(faces.set),
+        divisions_(faces.divisions),
+        cuts_(faces.cuts),
+        segments_(faces.set, faces.runs, faces.divisions, faces.cuts, faces.stations),
+        runs_(faces.runs) {}
 
-  Result<ClosedEdges> run(double max_gap, double same_share, std::span<const std::uint8_t> is_joined) {
-    Result<EdgePoints> points = edge_points(runs_, segments_, same_share, is_joined, cancel_);
-    if (!points) return points.status();
-    points_ = *std::move(points);
+  Result<ClosedEdges> run() {
+    Result<StationVertices> met = station_vertices(runs_, segments_, of_.same_share, of_.is_joined, of_.cancel);
+    if (!met) return met.status();
+    met_ = *std::move(met);
     number_vertices();
     if (Status status = evaluate(); !status.ok()) return status;
-    find_open(max_gap);
+    find_open();
     join();
     if (Status status = resolve_inserted(); !status.ok()) return status;
     list_members();
@@ -60,7 +58,7 @@ class Closer {
 
  private:
   Status look_at_cancel() const {
-    return cancel_ && cancel_->load() ? Status(StatusCode::cancelled, "cancelled by the caller") : Status();
+    return of_.cancel && of_.cancel->load() ? Status(StatusCode::cancelled, "cancelled by the caller") : Status();
   }
 
   CutPatch* cut_of(std::uint32_t patch) const { return find_cut(cuts_, patch); }
@@ -77,15 +75,15 @@ class Closer {
       if (!divisions_[patch].empty) zeros_[patch] -= static_cast<std::uint32_t>(divisions_[patch].inner_count());
     count_ = bases_.back() + static_cast<std::uint32_t>(segments_.inserted().size());
     is_used_.assign(count_, 0);
-    of_points_.reserve(points_.vertices.size());
+    of_stations_.reserve(met_.vertices.size());
     const auto use = [&](const PatchVertex& vertex) {
       const std::uint32_t number = this->number(vertex);
       is_used_[number] = 1;
       return number;
     };
-    for (const PatchVertex& vertex : points_.vertices) of_points_.push_back(use(vertex));
+    for (const PatchVertex& vertex : met_.vertices) of_stations_.push_back(use(vertex));
     for (const auto& [a, b] : segments_.same()) same_.push_back({use(a), use(b)});
-    for (const EdgeSegment& gap : points_.gaps) gaps_.push_back({use(gap.low), use(gap.high)});
+    for (const EdgeSegment& gap : met_.gaps) gaps_.push_back({use(gap.low), use(gap.high)});
   }
   std::uint32_t boundary_count(std::uint32_t patch) const {
     if (const CutPatch* const cut = cut_of(patch)) return static_cast<std::uint32_t>(cut->vertices.size());
@@ -128,28 +126,28 @@ class Closer {
     }
   }
 
-  /// Finds the edges along which faces are farther apart than `max_gap`.
-  void find_open(double max_gap) {
+  /// Finds the edges along which faces are farther apart than the largest gap.
+  void find_open() {
     is_open_.assign(set_.edges->edges.size(), 0);
     widths_.assign(is_open_.size(), 0);
-    if (max_gap == std::numeric_limits<double>::infinity()) return;
-    for (const EdgePoint& point : points_.points) {
+    if (of_.max_gap == std::numeric_limits<double>::infinity()) return;
+    for (const StationVertices::Station& station : met_.stations) {
       Box3 box;
-      for (std::uint32_t k = 0; k < point.count; ++k) box.extend(own_[of_points_[point.first + k]]);
+      for (std::uint32_t k = 0; k < station.count; ++k) box.extend(own_[of_stations_[station.first + k]]);
       const double width = box.diagonal();
-      if (width > max_gap) is_open_[point.edge] = 1;
-      widths_[point.edge] = std::max(widths_[point.edge], width);
+      if (width > of_.max_gap) is_open_[station.edge] = 1;
+      widths_[station.edge] = std::max(widths_[station.edge], width);
     }
   }
 
   void join() {
     sets_.emplace(count_ + set_.edges->vertices.size());
     for (const auto& [a, b] : same_) sets_->unite(a, b);
-    for (const EdgePoint& point : points_.points) {
-      if (is_open_[point.edge]) continue;
-      const std::uint32_t* const of = &of_points_[point.first];
-      for (std::uint32_t k = 1; k < point.count; ++k) sets_->unite(of[0], of[k]);
-      if (point.vertex != no_id) sets_->unite(of[0], count_ + point.vertex);
+    for (const StationVertices::Station& station : met_.stations) {
+      if (is_open_[station.edge]) continue;
+      const std::uint32_t* const of = &of_stations_[station.first];
+      for (std::uint32_t k = 1; k < station.count; ++k) sets_->unite(of[0], of[k]);
+      if (station.vertex != no_id) sets_->unite(of[0], count_ + station.vertex);
     }
     join_gaps();
   }
@@ -158,9 +156,9 @@ class Closer {
   void join_gaps() {
     if (gaps_.empty()) return;
     std::vector<std::uint32_t> places(count_, no_id);  // by vertex of a point: its place
-    for (const EdgePoint& point : points_.points)
-      for (std::uint32_t k = 0; k < point.count && !is_open_[point.edge]; ++k)
-        places[of_points_[point.first + k]] = sets_->find(of_points_[point.first + k]).member;
+    for (const StationVertices::Station& station : met_.stations)
+      for (std::uint32_t k = 0; k < station.count && !is_open_[station.edge]; ++k)
+        places[of_stations_[station.first + k]] = sets_->find(of_stations_[station.first + k]).member;
     UnionFind lines(count_);
     for (const auto& [a, b] : same_) lines.unite(a, b);
     for (const auto& [a, b] : gaps_) lines.unite(a, b);
@@ -186,9 +184,9 @@ class Closer {
     std::vector<InsertedVertex> inserted(segments_.inserted().begin(), segments_.inserted().end());
     std::vector<std::uint32_t> order;
     std::vector<std::uint8_t> is_used(inserted.size(), 0);
-    for (const EdgePoint& point : points_.points)
-      for (std::uint32_t k = 0; k < point.count && !is_open_[point.edge]; ++k)
-        if (const std::uint32_t v = points_.vertices[point.first + k].vertex; v & PatchVertex::inserted)
+    for (const StationVertices::Station& station : met_.stations)
+      for (std::uint32_t k = 0; k < station.count && !is_open_[station.edge]; ++k)
+        if (const std::uint32_t v = met_.vertices[station.first + k].vertex; v & PatchVertex::inserted)
           is_used[v ^ PatchVertex::inserted] = 1;
     for (std::uint32_t k = 0; k < inserted.size(); ++k)
       if (is_used[k]) order.push_back(k);
@@ -217,7 +215,7 @@ class Closer {
       const auto first = static_cast<std::uint32_t>(cut->vertices.size());
       for (const InsertedVertex& vertex : inserted) cut->vertices.push_back(vertex.local);
       const std::size_t count = cut->triangles.size();
-      const ChordBound chord = chord_(patch);
+      const ChordBound chord = of_.chord(patch);
       // A chord's sliver, and that of its parts beside it.
       if (std::ranges::any_of(inserted, &InsertedVertex::is_on_chord)) cut->sliver *= 2;
       const auto itself = [](std::uint32_t vertex) { return vertex; };  // cut patches have one vertex at a pole
@@ -247,9 +245,9 @@ class Closer {
     std::vector<std::uint32_t>& first = out_.first_members;
     first.assign(1, 0);
     places_.assign(count_ + set_.edges->vertices.size(), no_id);
-    for (const EdgePoint& point : points_.points) {
-      if (is_open_[point.edge] || !runs_.meet(point.edge)) continue;
-      std::uint32_t& place = places_[sets_->find(of_points_[point.first]).member];
+    for (const StationVertices::Station& station : met_.stations) {
+      if (is_open_[station.edge] || !runs_.meet(station.edge)) continue;
+      std::uint32_t& place = places_[sets_->find(of_stations_[station.first]).member];
       if (place == no_id) place = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
     }
     for (std::uint32_t k = 0; k < count_; ++k) {
@@ -278,21 +276,21 @@ class Closer {
     for (const Box3& box : boxes) out_.places.push_back(box.centre());
     put_at_vertices(boxes);
     out_.gaps.assign(set_.edges->edges.size(), 0);
-    for (const EdgePoint& point : points_.points) {
-      if (is_open_[point.edge]) continue;
+    for (const StationVertices::Station& station : met_.stations) {
+      if (is_open_[station.edge]) continue;
       double gap = 0;
-      for (const std::uint32_t vertex : std::span(of_points_).subspan(point.first, point.count))
+      for (const std::uint32_t vertex : std::span(of_stations_).subspan(station.first, station.count))
         if (places_[vertex] != no_id) gap = std::max(gap, length(own_[vertex] - out_.places[places_[vertex]]));
       out_.gap = std::max(out_.gap, gap);
-      out_.gaps[point.edge] = std::max(out_.gaps[point.edge], rounded_up(gap));
+      out_.gaps[station.edge] = std::max(out_.gaps[station.edge], rounded_up(gap));
     }
     for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
       if (is_open_[edge]) out_.gaps[edge] = rounded_up(widths_[edge] / 2);
-    for (const std::uint32_t own : points_.own) out_.closed_segments += own;
+    for (const std::uint32_t own : met_.own) out_.closed_segments += own;
     out_.closed_segments -= count_open();
     for (std::size_t k = 0; k < gaps_.size(); ++k) {
       const std::uint32_t low = places_[gaps_[k][0]], high = places_[gaps_[k][1]];
-      out_.closed_segments += std::int64_t{low == high && low != no_id} - !points_.gaps[k].begins();
+      out_.closed_segments += std::int64_t{low == high && low != no_id} - !met_.gaps[k].begins();
     }
   }
 
@@ -318,15 +316,15 @@ class Closer {
   std::int64_t count_open() {
     std::int64_t open = 0;
     std::vector<std::array<std::uint32_t, 2>> segments;
-    for (const auto& [low, high, is_alone] : points_.spans) {
-      const std::uint32_t edge = points_.points[low].edge;
+    for (const auto& [low, high, is_alone] : met_.spans) {
+      const std::uint32_t edge = met_.stations[low].edge;
       if (is_open_[edge] || !runs_.meet(edge)) {
         open += is_alone;  // it gets no vertices
         continue;
       }
       for (std::uint32_t k = low; k < high; ++k) {
-        const std::uint32_t a = sets_->find(of_points_[points_.points[k].first]).member;
-        const std::uint32_t b = sets_->find(of_points_[points_.points[k + 1].first]).member;
+        const std::uint32_t a = sets_->find(of_stations_[met_.stations[k].first]).member;
+        const std::uint32_t b = sets_->find(of_stations_[met_.stations[k + 1].first]).member;
         if (a != b) segments.push_back({std::min(a, b), std::max(a, b)});
       }
     }
@@ -338,19 +336,18 @@ class Closer {
     return open;
   }
 
-  const std::atomic<bool>* cancel_;
+  const DividedFaces& of_;
   const PatchSet::Impl& set_;
-  FunctionRef<ChordBound(std::uint32_t)> chord_;
   std::span<const Division> divisions_;
   std::span<CutPatch> cuts_;
   EdgeSegments segments_;
   const EdgeRuns& runs_;
-  EdgePoints points_;
+  StationVertices met_;
   std::vector<std::uint32_t> bases_;  ///< by patch: the number of its first vertex; then that of the first inserted one
   std::vector<std::uint32_t> zeros_;  ///< by patch: the number that its vertex 0 would have, modulo 2^32
   std::uint32_t count_ = 0;
   std::vector<std::uint8_t> is_used_;
-  std::vector<std::uint32_t> of_points_;
+  std::vector<std::uint32_t> of_stations_;
   std::vector<std::array<std::uint32_t, 2>> same_, gaps_;  ///< vertices; of lines that close gaps: their segments
   std::vector<Vec3> own_;
   std::vector<std::uint8_t> is_open_;
@@ -362,11 +359,6 @@ class Closer {
 
 }  // namespace
 
-Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                                std::span<CutPatch> cuts, const EdgeStops* stops, double max_gap, double same_share,
-                                std::span<const std::uint8_t> is_joined, FunctionRef<ChordBound(std::uint32_t)> chord,
-                                const std::atomic<bool>* cancel) {
-  return Closer(set, runs, divisions, cuts, stops, chord, cancel).run(max_gap, same_share, is_joined);
-}
+Result<ClosedEdges> close_edges(const DividedFaces& faces) { return Closer(faces).run(); }
 
 }}  // namespace tessera::abi_0_1

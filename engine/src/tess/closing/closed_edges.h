@@ -1,10 +1,16 @@
 #pragma once
 // Closes the mesh of a shape along its edges: all faces get the same vertices there.
 //
-// Proof that the mesh is closed: along an edge, the boundaries of all its faces have vertices at the same parameters,
-// and those of one parameter get one position. So each segment belongs to as many triangles as the edge has coedges,
-// whatever the positions are, if loops cover the range of the edge and the patches there have triangles. Triangles two
-// of whose corners are one position drop out together with their sides, in pairs.
+// A station is a parameter of an edge at which every face along the edge has a vertex. In this room:
+// 1. EdgeRuns list, edge by edge, the parts of loops that run along it within one patch.
+// 2. EdgeStations are found before patches are cut, so that chords and sides end at them.
+// 3. station_vertices() lists the vertices that the divided patches have at stations, and inserts those that they lack.
+// 4. close_edges() gives all vertices of a station one position.
+//
+// Proof that the mesh is closed: along an edge, the boundaries of all its faces have vertices at the same stations, and
+// those of one station get one position. So each segment belongs to as many triangles as the edge has coedges, whatever
+// the positions are, if loops cover the range of the edge and the patches there have triangles. Triangles two of whose
+// corners are one position drop out together with their sides, in pairs.
 
 #include <atomic>
 #include <cstdint>
@@ -37,15 +43,23 @@ struct ClosedEdges {
   std::int64_t closed_segments = 0;
 };
 
-/// Finds the vertices of all edges, and inserts those that patches lack: into `cuts`, and as edits into others.
-/// Distances of cut patches are extended to their new triangles, by `chord` of the patch. Edges with gaps above
-/// `max_gap` stay open. Parameters within `same_share` of an edge's range count as one. `is_joined`: by 4 * patch +
-/// side, whether triangles of another patch have the same border anyway. `stops`: those that `cuts` were made by; null
-/// if there are none. `cancel`: looked at for each edge and each
-/// patch, unless null; then `cuts` may be divided in part. Errors: cancelled.
-Result<ClosedEdges> close_edges(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                                std::span<CutPatch> cuts, const EdgeStops* stops, double max_gap, double same_share,
-                                std::span<const std::uint8_t> is_joined,
-                                FunctionRef<ChordBound(std::uint32_t patch)> chord, const std::atomic<bool>* cancel);
+/// The faces of a set once their patches are divided. All must outlive the call that takes it.
+struct DividedFaces {
+  const PatchSet::Impl& set;
+  const EdgeRuns& runs;
+  std::span<const Division> divisions;  ///< by patch
+  std::span<CutPatch> cuts;
+  const EdgeStations* stations;             ///< those that `cuts` were made by; null if there are none
+  std::span<const std::uint8_t> is_joined;  ///< by 4 * patch + side: triangles of another patch have the border anyway
+  FunctionRef<ChordBound(std::uint32_t patch)> chord;
+  double max_gap;                   ///< edges with larger gaps stay open
+  double same_share;                ///< parameters within this share of an edge's range count as one
+  const std::atomic<bool>* cancel;  ///< looked at for each edge and each patch, unless null
+};
+
+/// Finds the vertices of all edges, and inserts those that patches lack: into the cut patches, and as edits into others.
+/// Distances of cut patches are extended to their new triangles. If cancelled, cut patches may be divided in part.
+/// Errors: cancelled.
+Result<ClosedEdges> close_edges(const DividedFaces& faces);
 
 }}  // namespace tessera::abi_0_1

@@ -139,14 +139,6 @@ std::span<const TrimPiece> EdgeRuns::pieces(const EdgeRun& run) const {
   return std::span(impl_of(edges_->faces[run.face].region).pieces).subspan(run.first, run.end - run.first);
 }
 
-const EdgeRun* EdgeRuns::run_of(std::uint32_t face, std::uint32_t first, std::size_t count) const {
-  const auto place = [&](std::uint32_t k) { return std::pair(runs_[k].face, runs_[k].first); };
-  const auto at = std::ranges::lower_bound(by_face_, std::pair(face, first), {}, place);
-  if (at == by_face_.end() || place(*at) != std::pair(face, first)) return nullptr;
-  const EdgeRun& run = runs_[*at];
-  return run.end - run.first == count ? &run : nullptr;
-}
-
 CurveAlongEdge EdgeRuns::curve(std::uint32_t face, const TrimPiece& piece) const {
   if (piece.loop == no_id || piece.curve_index == no_id) return {};
   const TrimLoop& loop = (*edges_->faces[face].loops)[piece.loop];
@@ -253,12 +245,9 @@ void EdgeRuns::sort() {
   for (std::size_t edge = 0; edge + 1 < first_.size(); ++edge)
     std::ranges::stable_sort(std::span(runs_).subspan(first_[edge], first_[edge + 1] - first_[edge]), {},
                              &EdgeRun::use);
-  for (std::uint32_t k = 0; k < runs_.size(); ++k)
-    if (runs_[k].is_side) on_sides_.emplace_back(4 * runs_[k].patch + static_cast<std::uint32_t>(runs_[k].side), k);
-  std::ranges::sort(on_sides_);
-  by_face_.resize(runs_.size());
-  std::iota(by_face_.begin(), by_face_.end(), std::uint32_t{0});
-  std::ranges::sort(by_face_, {}, [&](std::uint32_t k) { return std::pair(runs_[k].face, runs_[k].first); });
+  by_patch_.resize(runs_.size());
+  std::iota(by_patch_.begin(), by_patch_.end(), std::uint32_t{0});
+  std::ranges::stable_sort(by_patch_, {}, [&](std::uint32_t k) { return runs_[k].patch; });
 }
 
 }}  // namespace tessera::abi_0_1

@@ -70,14 +70,11 @@ class EdgeRuns {
   /// The number of a run, below count().
   std::size_t index(const EdgeRun& run) const { return static_cast<std::size_t>(&run - runs_.data()); }
   std::size_t count() const { return runs_.size(); }
-  /// The run of exactly these pieces of a face; null if there is none.
-  const EdgeRun* run_of(std::uint32_t face, std::uint32_t first, std::size_t count) const;
-  /// Calls visit(run) for the runs along a side of a patch.
+  /// Calls visit(run) for the runs within a patch and along its sides.
   template <class Visit>
-  void for_runs_on(std::uint32_t patch, Side side, Visit visit) const {
-    const std::uint32_t border = 4 * patch + static_cast<std::uint32_t>(side);
-    const auto place = [](const std::pair<std::uint32_t, std::uint32_t>& of) { return of.first; };
-    for (const auto& [of, run] : std::ranges::equal_range(on_sides_, border, {}, place)) visit(runs_[run]);
+  void for_runs_of(std::uint32_t patch, Visit visit) const {
+    const auto key = [&](std::uint32_t k) { return runs_[k].patch; };
+    for (const std::uint32_t k : std::ranges::equal_range(by_patch_, patch, {}, key)) visit(runs_[k]);
   }
   TESSERA_INTERNAL_EXPORT std::span<const TrimPiece> pieces(const EdgeRun& run) const;
   /// The curve of a piece's loop, and the edge along it.
@@ -94,9 +91,8 @@ class EdgeRuns {
 
   const PatchEdges* edges_;
   std::vector<EdgeRun> runs_, gaps_;
-  std::vector<std::uint32_t> first_;                               ///< by edge
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> on_sides_;  ///< 4 * patch + side, and a run; sorted
-  std::vector<std::uint32_t> by_face_;                             ///< runs by growing face and first piece
+  std::vector<std::uint32_t> first_;     ///< by edge
+  std::vector<std::uint32_t> by_patch_;  ///< runs by growing patch
   std::uint32_t next_use_ = 0;
 };
 

@@ -11,8 +11,8 @@
 namespace tessera { inline namespace abi_0_1 {
 
 EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-                           std::span<const CutPatch> cuts, const EdgeStops* stops)
-    : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts), stops_(stops) {}
+                           std::span<const CutPatch> cuts, const EdgeStations* stations)
+    : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts), stations_(stations) {}
 
 void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) {
   const std::span<const EdgeRun> runs = runs_.of(edge);
@@ -80,7 +80,7 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
       std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
   std::optional<double> before;  // the parameter where the last segment ends
   std::span<const double> inside;
-  if (stops_ && run.edge != no_id) inside = stops_->at_vertices(run);
+  if (stations_ && run.edge != no_id) inside = stations_->at_vertices(run);
   std::size_t k = std::max<std::size_t>(side.count_up_to(from), 1);
   for (Place end = side[k - 1]; k < side.size() && end.along < to; ++k) {
     const Place start = std::exchange(end, side[k]);

@@ -10,7 +10,7 @@
 
 #include "tess/cells/stitched_patch.h"
 #include "tess/closing/edge_runs.h"
-#include "tess/closing/edge_stops.h"
+#include "tess/closing/edge_stations.h"
 #include "tess/closing/side_vertices.h"
 #include "tess/trimmed/cut_patch.h"
 
@@ -47,10 +47,10 @@ struct EdgeSegment {
 /// The segments of all edges of a set, and the vertices that they need at the ends of edges.
 class EdgeSegments {
  public:
-  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut; `stops`: for these
+  /// Prepares for finding them. `divisions`: by patch; `cuts`: the patches that loops cut; `stations`: for these
   /// divisions, or null. All must outlive this object.
   EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
-               std::span<const CutPatch> cuts, const EdgeStops* stops);
+               std::span<const CutPatch> cuts, const EdgeStations* stations);
 
   /// Appends the segments of an edge: use by use, by growing parameters of the edge.
   void append(std::size_t edge, std::vector<EdgeSegment>& segments);
@@ -88,7 +88,7 @@ class EdgeSegments {
   const EdgeRuns& runs_;
   std::span<const Division> divisions_;
   std::span<const CutPatch> cuts_;
-  const EdgeStops* stops_;
+  const EdgeStations* stations_;
   std::vector<InsertedVertex> inserted_;
   std::vector<std::array<PatchVertex, 2>> same_;
   std::unordered_multimap<std::uint64_t, std::uint32_t> on_sides_;  ///< vertices inserted where runs end on sides

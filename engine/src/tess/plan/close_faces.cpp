@@ -64,11 +64,18 @@ Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPa
   for (int attempt = 0; attempt < max_closings; ++attempt) {
     if (cutter)
       if (Status status = cutter->cut(); !status.ok()) return status;
-    Result<ClosedEdges> closed = close_edges(
-        set, *facts.faces.runs, patches.divisions, patches.cuts, cutter ? cutter->stops() : nullptr,
-        facts.needs.options().max_gap, same_share(set, request.tolerance),
-        joined_borders(facts.borders.edges(), patches), [&](std::uint32_t patch) { return facts.needs.chord(patch); },
-        execution.cancel);
+    const std::vector<std::uint8_t> is_joined = joined_borders(facts.borders.edges(), patches);
+    const auto chord = [&](std::uint32_t patch) { return facts.needs.chord(patch); };
+    Result<ClosedEdges> closed = close_edges({.set = set,
+                                              .runs = *facts.faces.runs,
+                                              .divisions = patches.divisions,
+                                              .cuts = patches.cuts,
+                                              .stations = cutter ? cutter->stations() : nullptr,
+                                              .is_joined = is_joined,
+                                              .chord = chord,
+                                              .max_gap = facts.needs.options().max_gap,
+                                              .same_share = same_share(set, request.tolerance),
+                                              .cancel = execution.cancel});
     if (!closed) return closed.status();
     patches.closed = *std::move(closed);
     patches.open_edges = static_cast<std::uint32_t>(

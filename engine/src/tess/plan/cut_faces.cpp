@@ -11,11 +11,11 @@ CutFaces CutFaces::of(const PatchSet::Impl& set, bool closes_edges) {
   if (!set.trims) return made;
   for (const TrimRegion& region : set.trims->regions) made.sides.emplace_back(region);
   if (!made.runs) return made;
-  std::vector<std::uint32_t> faces(set.patches.size(), no_id);
-  for (std::uint32_t face = 0; face < set.edges->faces.size(); ++face)
-    for (const std::uint32_t patch : set.edges->faces[face].patches)
-      if (patch != no_id) faces[patch] = face;
-  for (const PatchTrims::Cut& cut : set.trims->cuts) made.of_cuts.push_back(faces[cut.patch]);
+  std::vector<std::uint8_t> is_of_face(set.patches.size(), 0);
+  for (const PatchEdges::Face& face : set.edges->faces)
+    for (const std::uint32_t patch : face.patches)
+      if (patch != no_id) is_of_face[patch] = 1;
+  for (const PatchTrims::Cut& cut : set.trims->cuts) made.names_edges.push_back(is_of_face[cut.patch]);
   return made;
 }
 

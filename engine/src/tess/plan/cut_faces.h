@@ -16,9 +16,9 @@ struct CutFaces {
   /// `closes_edges`: whether faces are to get the same vertices along edges. The set must outlive the result.
   static CutFaces of(const PatchSet::Impl& set, bool closes_edges);
 
-  std::vector<FaceSides> sides;        ///< by region of the set's trims
-  std::optional<EdgeRuns> runs;        ///< if edges are closed
-  std::vector<std::uint32_t> of_cuts;  ///< by cut patch: into PatchEdges::faces, or no_id; empty without runs
+  std::vector<FaceSides> sides;           ///< by region of the set's trims
+  std::optional<EdgeRuns> runs;           ///< if edges are closed
+  std::vector<std::uint8_t> names_edges;  ///< by cut patch: whether its face belongs to a shape; empty without runs
 };
 
 }}  // namespace tessera::abi_0_1

@@ -169,15 +169,15 @@ double FaceCutter::cut_patch(std::size_t c, CutPatchMaker& maker) {
     room.limits.is_shared[static_cast<std::size_t>(side)] = edge != no_id && is_shared_[edge];
   }
   room.limits.cancel = quiet_.cancel;
-  std::optional<PatchStops> demands;
-  if (stops_ && faces.of_cuts[c] != no_id) room.limits.edges = &demands.emplace(*stops_, cut.patch, faces.of_cuts[c]);
+  PatchStations stations;
+  if (stations_ && faces.names_edges[c]) room.limits.stations = &(stations = stations_->of(cut.patch));
   maker.make(set_.trims->regions[cut.region], faces.sides[cut.region], cut, room.limits,
              patches_.divisions[cut.patch].border, facts_.borders.shapes(facts_.needs)[cut.patch].collapsed,
              facts_.needs.chord(cut.patch), made);
   return made.has_too_many ? std::numeric_limits<double>::infinity() : bound(room, made);
 }
 
-Status FaceCutter::find_stops(std::vector<std::uint8_t>& is_changed) {
+Status FaceCutter::find_stations(std::vector<std::uint8_t>& is_changed) {
   const EdgeRuns& runs = *facts_.faces.runs;
   const std::size_t edges = set_.edges->edges.size();
   std::vector<ChordLimits> of_cuts;
@@ -190,10 +190,10 @@ Status FaceCutter::find_stops(std::vector<std::uint8_t>& is_changed) {
   const auto limits = [&](std::uint32_t patch) -> const ChordLimits& {
     return of_cuts[static_cast<std::size_t>(find_cut(cuts, patch) - cuts.data())];
   };
-  std::optional<EdgeStops> before = std::exchange(stops_, std::nullopt);
-  EdgeStops& now = stops_.emplace(runs, same_share(set_, request_.tolerance));
+  std::optional<EdgeStations> before = std::exchange(stations_, std::nullopt);
+  EdgeStations& now = stations_.emplace(runs, same_share(set_, request_.tolerance));
   const auto find = [&](std::size_t begin, std::size_t end) {
-    EdgeStops::Workspace workspace;
+    EdgeStations::Workspace workspace;
     for (std::size_t edge = begin; edge < end; ++edge)
       if (!before || std::ranges::any_of(runs.of(edge), [&](const EdgeRun& run) { return is_changed[run.patch]; }))
         now.find(set_, edge, segments, limits, workspace);
@@ -236,7 +236,7 @@ Status FaceCutter::cut_once() {
   std::vector<std::uint8_t> is_changed = divide();
   if (Status status = find_rooms(); !status.ok()) return status;
   if (facts_.faces.runs)
-    if (Status status = find_stops(is_changed); !status.ok()) return status;
+    if (Status status = find_stations(is_changed); !status.ok()) return status;
   const std::vector<CutPatch>& cuts = patches_.cuts;
   const auto cut_some = [&](std::size_t begin, std::size_t end) {
     const auto maker = makers_.take();

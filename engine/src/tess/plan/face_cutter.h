@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "parallel/workspaces.h"
-#include "tess/closing/edge_stops.h"
+#include "tess/closing/edge_stations.h"
 #include "tess/plan/certified_plan.h"
 #include "tess/plan/cut_shares.h"
 #include "tess/plan/plan_facts.h"
@@ -33,8 +33,8 @@ class FaceCutter {
   /// Chooses the segments of cut patches, divides all patches and cuts those that are due or changed. Errors:
   /// invalid_argument (more triangles than the limit), cancelled.
   Status cut();
-  /// The stops by which the patches were cut; null if edges of shapes stay open.
-  const EdgeStops* stops() const { return stops_ ? &*stops_ : nullptr; }
+  /// The stations by which the patches were cut; null if edges of shapes stay open.
+  const EdgeStations* stations() const { return stations_ ? &*stations_ : nullptr; }
   /// Sets the bounds of a cut patch, place `c` among the cuts, whose triangles have been divided. Returns the largest
   /// over its limit.
   double bound_edited(std::size_t c);
@@ -64,8 +64,8 @@ class FaceCutter {
   /// Finds the rooms of all cut patches, as patches are divided now. Errors: cancelled.
   Status find_rooms();
   /// Finds what chords along edges must keep for the faces on both sides, as patches are divided now. Edges without a
-  /// changed patch keep their stops. Marks the patches along edges whose stops change as changed, too.
-  Status find_stops(std::vector<std::uint8_t>& is_changed);
+  /// changed patch keep their stations. Marks the patches along edges whose stations change as changed, too.
+  Status find_stations(std::vector<std::uint8_t>& is_changed);
   /// Cuts a patch and sets its bounds. Returns the largest over its limit.
   double cut_patch(std::size_t c, CutPatchMaker& maker);
   /// Refuses cut patches that have more triangles than the limit.
@@ -83,7 +83,7 @@ class FaceCutter {
   CutShares shares_;
   std::vector<double> excess_;  ///< by cut patch: its largest bound over the limit
   std::vector<Room> rooms_;     ///< by cut patch
-  std::optional<EdgeStops> stops_;
+  std::optional<EdgeStations> stations_;
   Workspaces<CutPatchMaker> makers_;
 };
 

@@ -127,14 +127,14 @@ void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const
     out.open_edges = 0;
     return;
   }
-  number(collapsed, limits.edges != nullptr, out);
+  number(collapsed, limits.stations != nullptr, out);
   out.has_too_many = !refine(limits, chord, out);
   if (out.has_too_many) return;
   unfold(limits, cutter_.sliver_bound(), chord, band_, out);
   merge(limits, out);
   out.whole = band_;
   measure(limits.segments, chord, out);
-  find_border_vertices(borders, limits.domain, limits.edges != nullptr, out);
+  find_border_vertices(borders, limits.domain, limits.stations != nullptr, out);
 }
 
 bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
@@ -149,7 +149,7 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
     const PatchSides& lines = along_u ? sides.v : sides.u;
     const std::size_t line = (along_u ? b : a) + !above;
     std::vector<SidePoint> points = lines.points(line, along_u ? a : b, borders[s]);
-    if (limits.edges) limits.edges->put_on_side(side, points);
+    if (limits.stations) limits.stations->put_on_side(side, points);
     const double across = side == Side::v0   ? limits.domain.v0
                           : side == Side::v1 ? limits.domain.v1
                           : side == Side::u0 ? limits.domain.u0

@@ -58,8 +58,8 @@ TrimPiece divide_at(TrimPiece& piece, double x) {
 
 }  // namespace
 
-// Parts of one piece between two stops are divided as they are; only parts that go on into other pieces become pieces.
-double PieceChords::append(std::span<const TrimPiece> chain, const ChordStops& stops, const ChordLimits& limits,
+// Parts of one piece between two stations are divided as they are; only parts that go on into other pieces become pieces.
+double PieceChords::append(std::span<const TrimPiece> chain, const CurveStations& stations, const ChordLimits& limits,
                            std::vector<ParameterPoint>& points, std::vector<double>& parameters) {
   double most = 0;
   const auto end_parts = [&] {
@@ -67,21 +67,21 @@ double PieceChords::append(std::span<const TrimPiece> chain, const ChordStops& s
     parts_.clear();
   };
   parts_.clear();
-  auto stop = std::ranges::upper_bound(stops.at, chain.front().range.from + stops.same);
+  auto station = std::ranges::upper_bound(stations.at, chain.front().range.from + stations.same);
   for (const TrimPiece& piece : chain) {
     const double from = piece.range.from, to = piece.range.to;
-    while (stop != stops.at.end() && *stop <= from + stops.same) ++stop;
-    const auto first = stop;
-    while (stop != stops.at.end() && *stop < to - stops.same) ++stop;
-    const std::span<const double> inside(first, stop);
-    const bool ends = &piece == &chain.back() || (stop != stops.at.end() && *stop <= to + stops.same);
+    while (station != stations.at.end() && *station <= from + stations.same) ++station;
+    const auto first = station;
+    while (station != stations.at.end() && *station < to - stations.same) ++station;
+    const std::span<const double> inside(first, station);
+    const bool ends = &piece == &chain.back() || (station != stations.at.end() && *station <= to + stations.same);
     if (inside.empty() && (!ends || !parts_.empty())) {
       parts_.push_back(piece);
       if (ends) end_parts();
       continue;
     }
     const auto place = [&](double t) { return (t - from) / (to - from); };
-    std::size_t begin = 0, end = inside.size();  // of the stops between which parts are divided as they are
+    std::size_t begin = 0, end = inside.size();  // of the stations between which parts are divided as they are
     TrimPiece rest = piece;
     double at = 0;
     if (!parts_.empty()) {
@@ -194,7 +194,7 @@ double PieceChords::error_of(const TrimPiece& piece) const {
   return piece.error.u * limits_->speed.u + piece.error.v * limits_->speed.v;
 }
 
-void PieceChords::append_one(const TrimPiece& piece, std::span<const double> stops) {
+void PieceChords::append_one(const TrimPiece& piece, std::span<const double> stations) {
   piece_ = &piece;
   degree_ = piece.curve.degree();
   error_ = error_of(piece);
@@ -206,8 +206,8 @@ void PieceChords::append_one(const TrimPiece& piece, std::span<const double> sto
     net[k] = {weight * (point.u - piece.start().u), weight * (point.v - piece.start().v), weight};
   }
   double from = 0;
-  for (const double stop : stops) {
-    const double at = (stop - piece.range.from) / (piece.range.to - piece.range.from);
+  for (const double station : stations) {
+    const double at = (station - piece.range.from) / (piece.range.to - piece.range.from);
     split(net, (at - from) / (1 - from), before, net);
     divide(before, from, at, 0);
     from = at;

@@ -24,10 +24,10 @@ struct ChordLimits {
   const std::atomic<bool>* cancel = nullptr;  ///< once it is set, chords are not halved any more
 };
 
-/// Parameters of a caller's curve where chords must end.
-struct ChordStops {
+/// Stations along a caller's curve: parameters where chords must end.
+struct CurveStations {
   std::span<const double> at;  ///< growing
-  double same = 0;             ///< nearer to an end of a piece, a stop is that end
+  double same = 0;             ///< nearer to an end of a piece, a station is that end
 };
 
 /// The chords along a chain of pieces: their points but the start, and the parameters of the caller's curve there.
@@ -52,8 +52,8 @@ class PieceChords {
   /// than 2^20 chords. The errors of the pieces count as a part of the sliver.
   double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points,
                 std::vector<double>& parameters);
-  /// Does the same with chords that also end at stops. All pieces are of one curve.
-  double append(std::span<const TrimPiece> chain, const ChordStops& stops, const ChordLimits& limits,
+  /// Does the same with chords that also end at stations. All pieces are of one curve.
+  double append(std::span<const TrimPiece> chain, const CurveStations& stations, const ChordLimits& limits,
                 std::vector<ParameterPoint>& points, std::vector<double>& parameters);
 
  private:
@@ -83,8 +83,8 @@ class PieceChords {
   std::size_t reach(std::span<const TrimPiece> chain) const;
   double error_of(const TrimPiece& piece) const;
   void begin_chords(const ChordLimits& limits, std::vector<ParameterPoint>& points, std::vector<double>& parameters);
-  /// Appends the points of one piece but its start; chords end at the stops, which lie inside.
-  void append_one(const TrimPiece& piece, std::span<const double> stops);
+  /// Appends the points of one piece but its start; chords end at the stations, which lie inside.
+  void append_one(const TrimPiece& piece, std::span<const double> stations);
   /// Returns c so that weights w_k c^k, those of the same curve by another parameter, are equal at both ends.
   double balance(const Net& net) const;
   /// The largest part of the distance of control points from the chord at which the curve passes. Exact for degree 2.
@@ -104,7 +104,7 @@ class PieceChords {
   const ChordLimits* limits_ = nullptr;
   std::vector<ParameterPoint>* points_ = nullptr;
   std::vector<double>* parameters_ = nullptr;
-  std::vector<TrimPiece> parts_;  ///< from one stop to the next
+  std::vector<TrimPiece> parts_;  ///< from one station to the next
   int degree_ = 0;
   double most_ = 0, error_ = 0;
 };

@@ -74,9 +74,9 @@ bool PatchCutter::continues(const ParameterPoint& start, const TrimPiece& before
   const ParameterPoint &at = next.start(), &to = next.end();
   const auto is_monotone = [](double x, double y, double z) { return (x <= y && y <= z) || (x >= y && y >= z); };
   const Domain& d = patch_.domain;
-  if (patch_.edges && (before.loop != next.loop || before.curve_index != next.curve_index)) return false;
+  if (patch_.stations && (before.loop != next.loop || before.curve_index != next.curve_index)) return false;
   const bool has_turned = !is_monotone(start.u, at.u, to.u) || !is_monotone(start.v, at.v, to.v);
-  return patch_.chord_share == 1 && before.end() == at && (patch_.edges || !has_turned) && at.u != d.u0 &&
+  return patch_.chord_share == 1 && before.end() == at && (patch_.stations || !has_turned) && at.u != d.u0 &&
          at.u != d.u1 && at.v != d.v0 && at.v != d.v1;
 }
 
@@ -104,12 +104,15 @@ std::size_t PatchCutter::add_pieces(std::span<const TrimPiece> pieces, std::span
 }
 
 double PatchCutter::add_chords(std::span<const TrimPiece> chain, std::uint32_t first) {
-  if (!patch_.edges) return chords_of_pieces_.append(chain, limits_, points_, parameters_);
-  const LaidChords* const laid = patch_.chord_share == 1 ? patch_.edges->laid(first, chain.size()) : nullptr;
-  if (!laid) return chords_of_pieces_.append(chain, patch_.edges->stops(chain), limits_, points_, parameters_);
-  points_.insert(points_.end(), laid->points.begin(), laid->points.end());
-  parameters_.insert(parameters_.end(), laid->parameters.begin(), laid->parameters.end());
-  return laid->sliver;
+  if (!patch_.stations) return chords_of_pieces_.append(chain, limits_, points_, parameters_);
+  const RunStations* const run = patch_.stations->run_of(first);
+  if (!run) return chords_of_pieces_.append(chain, CurveStations(), limits_, points_, parameters_);
+  const bool is_whole = run->first == first && run->end - run->first == chain.size();
+  if (!is_whole || run->chords.points.empty() || patch_.chord_share != 1)
+    return chords_of_pieces_.append(chain, {run->at, run->same}, limits_, points_, parameters_);
+  points_.insert(points_.end(), run->chords.points.begin(), run->chords.points.end());
+  parameters_.insert(parameters_.end(), run->chords.parameters.begin(), run->chords.parameters.end());
+  return run->chords.sliver;
 }
 
 bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_, marks_) && cut(); }

@@ -13,7 +13,7 @@
 #include "plane/chord_crossings.h"
 #include "plane/cut_cells.h"
 #include "tess/cells/patch_side.h"
-#include "tess/trimmed/patch_sides.h"
+#include "tess/trimmed/patch_stations.h"
 #include "tess/trimmed/piece_chords.h"
 #include "tess/trimmed/speed_bound.h"
 #include "tess/trimmed/vertex_merger.h"
@@ -21,18 +21,6 @@
 #include "trim/trim_piece.h"
 
 namespace tessera { inline namespace abi_0_1 {
-
-/// What the edges of a shape demand of the boundary of a cut patch. Chords end where curves do.
-class EdgeDemands {
- public:
-  virtual ~EdgeDemands() = default;
-  /// The chords of a chain, `count` pieces from `first` on, by the limits of the patch; null if they are not known.
-  virtual const LaidChords* laid(std::uint32_t first, std::size_t count) const = 0;
-  /// The stops of a chain of pieces, valid until the next call.
-  virtual ChordStops stops(std::span<const TrimPiece> chain) const = 0;
-  /// Replaces the points of a side that lie on edges.
-  virtual void put_on_side(Side side, std::vector<SidePoint>& points) const = 0;
-};
 
 /// The facts that cutting a patch needs.
 struct TrimmedPatch {
@@ -44,9 +32,9 @@ struct TrimmedPatch {
   bool in_cells;           ///< whether triangles must be no wider than cells
   double bend;             ///< see ChordLimits
   VertexRounding rounding;
-  std::array<bool, 4> is_shared{};     ///< by Side: whether another patch has the same border, as across a seam
-  const EdgeDemands* edges = nullptr;  ///< set if loops name edges of a shape
-  double chord_share = 1;              ///< the largest length of a chord, in cells
+  std::array<bool, 4> is_shared{};          ///< by Side: whether another patch has the same border, as across a seam
+  const PatchStations* stations = nullptr;  ///< set if loops name edges of a shape
+  double chord_share = 1;                   ///< the largest length of a chord, in cells
   std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
   const std::atomic<bool>* cancel = nullptr;
 };
