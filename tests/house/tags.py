@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Checks that Universal Ctags, by which editors find names, sees those of ten files: tags.py CTAGS ENGINE.
 
-Each type that begins at the first column of a file must have a tag, within the namespace tessera.
+Each type that begins at the first column of a file must have a tag, within the namespace tessera. No class of the engine
+may have more than 25 member functions, overloads counted once, but for those that say why.
 """
 
 import pathlib
@@ -14,12 +15,43 @@ FILES = ['include/tessera/status.h', 'include/tessera/patch_set.h', 'include/tes
          'src/tess/closing/edge_runs.h', 'src/model/box_tree.h', 'src/trim/curve_extractions.h']
 TYPE = re.compile(r'^(?:class|struct|enum class)(?: \[\[\w+\]\])? (\w+)\b[^;{]*\{', re.M)
 
+MAX_MEMBERS = 25
+LARGER = {  # classes with more: how many, and why
+    'ObjFreeformReader': (35, 'a function for each statement of the format'),
+    'ExactScene': (33, 'implements the interface of scenes'),
+    'Lanes': (29, 'the operations of a vector'),
+    'RayScene::Impl': (28, 'the interface that scenes implement'),
+    'RibReader': (27, 'a function for each request of the format'),
+    'TextCursor': (27, 'a function for each kind of token'),
+    'ProvenMesh': (27, 'makes, writes and updates a mesh: to be divided'),
+    'Welder': (27, 'one pass over borders: to be divided'),
+    'ChordMarks': (27, 'one pass over chords: to be divided'),
+    'MeshTables': (26, 'an accessor for each table'),
+}
+
 
 def tags_of(ctags, file):
     """The names within tessera."""
     command = [ctags, '-f', '-', '--languages=C++', '--kinds-C++=+p', '--fields=+s', file]
     lines = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
     return {line.split('\t')[0] for line in lines if re.search(r'\t(?:namespace|class|struct):tessera', line)}
+
+
+def large_classes(ctags, engine):
+    """A fault for each class with too many member functions."""
+    command = [ctags, '-f', '-', '--languages=C++', '--kinds-C++=pf', '--fields=+s', '-R', engine / 'src', engine / 'include']
+    members = {}
+    for line in subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines():
+        if scope := re.search(r'\t(?:class|struct):(\S+)', line):
+            members.setdefault(scope[1], set()).add(line.split('\t')[0])
+    print(f'{len(members)} classes with member functions')
+    faults = [] if len(members) > 300 else ['the test finds few classes']
+    for scope, names in members.items():
+        name = re.sub(r'^tessera::(?:abi_\w+::)?|__anon\w+::|kernel::isa_\w+?::', '', scope)
+        limit = LARGER[name][0] if name in LARGER else MAX_MEMBERS
+        if len(names) > limit:
+            faults.append(f'{name} has {len(names)} member functions, the limit is {limit}')
+    return faults
 
 
 def main():
@@ -35,6 +67,7 @@ def main():
         if not wanted:
             faults.append(f'{name}: the test finds no type in it')
         faults += [f'{name}: no tag for {missing}' for missing in sorted(wanted - tags)]
+    faults += large_classes(ctags, engine)
     print('\n'.join(faults))
     return 1 if faults else 0
 
