@@ -177,7 +177,20 @@ class _Run:
 class Handle:
     """An object of the library. close() gives it up early; otherwise it ends with the last reference to it."""
 
+    _kind: str  # as in tsr_KIND_describe
     _handle: ctypes.c_void_p | None = None
+
+    def _make(self, function: Any, *arguments: Any, **options: Any) -> None:
+        """Makes the object by a function whose first argument is the new handle; the options are those of run()."""
+        handle = ctypes.c_void_p()
+        run(function, ctypes.byref(handle), *arguments, makes=handle, **options)
+        self._handle = handle
+
+    def _info(self) -> Any:
+        """Returns the tsr_KIND_info of the object."""
+        info = struct(f"tsr_{self._kind}_info")
+        call(getattr(library, f"tsr_{self._kind}_describe"), self._handle, ctypes.byref(info))
+        return info
 
     def close(self) -> None:
         """Frees the object. Later calls raise StateError."""

@@ -56,26 +56,16 @@ class MeshReport:
 class _Plan(Handle):
     """How a set is divided into triangles."""
 
+    _kind = "plan"
+
     def __init__(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
         options = struct("tsr_plan_options")
         library.tsr_plan_defaults(ctypes.byref(options))
         _fill(options, wanted)
-        handle = ctypes.c_void_p()
-        run(
-            library.tsr_plan_new,
-            ctypes.byref(handle),
-            patches._handle,
-            ctypes.byref(options),
-            progress=progress,
-            is_long=(len(patches) > _LONG and wanted["rates"] is None) or wanted["fewest"],
-            makes=handle,
+        is_long = (len(patches) > _LONG and wanted["rates"] is None) or wanted["fewest"]
+        self._make(
+            library.tsr_plan_new, patches._handle, ctypes.byref(options), progress=progress, is_long=is_long
         )
-        self._handle = handle
-
-    def describe(self) -> Any:
-        info = struct("tsr_plan_info")
-        call(library.tsr_plan_describe, self._handle, ctypes.byref(info))
-        return info
 
 
 MAX_RATE, MAX_PIXELS = 4096, 1 << 20
@@ -175,8 +165,7 @@ class Mesh:
     def _write(self, progress: Progress | None) -> None:
         """Describes the plan, takes memory and writes the mesh."""
         assert self._plan is not None and self._set is not None
-        info = self._take(self._plan.describe())
-        self._revision = self._set._info().revision
+        info = self._take(self._plan._info())
         run(
             library.tsr_plan_write,
             self._plan._handle,
@@ -249,7 +238,7 @@ class Mesh:
         if topology.value:
             self._write(progress)
         else:
-            self._take(self._plan.describe())
+            self._take(self._plan._info())
         return bool(topology.value)
 
     def check(self) -> MeshReport:

@@ -95,6 +95,8 @@ class Model(Handle):
     <Model 1 surface: 'goblet'>
     """
 
+    _kind = "model"
+
     def __init__(self, source: tuple[Any, ...]) -> None:
         self._source = source
         self._point_set: ctypes.c_void_p | None = None
@@ -102,11 +104,6 @@ class Model(Handle):
         _make(handle, source)
         self._handle = handle
         self._info()
-
-    def _info(self) -> Any:
-        info = struct("tsr_model_info")
-        call(library.tsr_model_describe, self._handle, ctypes.byref(info))
-        return info
 
     def _text(self, kind: int, index: int) -> str:
         text = library.tsr_model_text(self._handle, kind, index)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arrays import address_of, array_of, check_out, index_of, integer_of
-from ._calls import Handle, Progress, call, run
+from ._calls import Handle, Progress, call
 from ._library import library, struct
 from .errors import ArgumentError
 from .jets import Jets, evaluate_grid
@@ -80,6 +80,8 @@ class Patch:
 class PatchSet(Handle):
     """The patches of a model or of one of its shapes. ``patches[index]`` returns one."""
 
+    _kind = "set"
+
     def __init__(
         self,
         model: Model,
@@ -97,15 +99,8 @@ class PatchSet(Handle):
         options.shape = -1 if shape is None else integer_of("shape", shape, 0, 2**63 - 1)
         options.flags = _WHOLE * bool(whole) | _POINTS * bool(points) | _DOUBLE * bool(double)
         options.fit_tolerance = fit_tolerance or 0
-        handle = ctypes.c_void_p()
-        run(library.tsr_set_new, ctypes.byref(handle), model._handle, ctypes.byref(options), makes=handle)
-        self._handle = handle
+        self._make(library.tsr_set_new, model._handle, ctypes.byref(options))
         self._count: int = self._info().patches
-
-    def _info(self) -> Any:
-        info = struct("tsr_set_info")
-        call(library.tsr_set_describe, self._handle, ctypes.byref(info))
-        return info
 
     def __len__(self) -> int:
         return self._count

@@ -161,6 +161,8 @@ class Scene(Handle):
     (True, True, (3,))
     """
 
+    _kind = "scene"
+
     def __init__(self, patches: PatchSet, tolerance: float | None, pieces: int, editable: bool) -> None:
         self.patches = patches
         self._options = (tolerance, pieces, editable)
@@ -168,14 +170,7 @@ class Scene(Handle):
         library.tsr_scene_defaults(ctypes.byref(options))
         options.tolerance, options.is_editable = tolerance or 0, bool(editable)
         options.pieces = integer_of("pieces", pieces, 1, 8)
-        handle = ctypes.c_void_p()
-        run(library.tsr_scene_new, ctypes.byref(handle), patches._handle, ctypes.byref(options), makes=handle)
-        self._handle = handle
-
-    def _info(self) -> Any:
-        info = struct("tsr_scene_info")
-        call(library.tsr_scene_describe, self._handle, ctypes.byref(info))
-        return info
+        self._make(library.tsr_scene_new, patches._handle, ctypes.byref(options))
 
     @property
     def box(self) -> np.ndarray:
@@ -232,21 +227,12 @@ class Scene(Handle):
         first[k] to first[k + 1] - 1."""
         rays = _Rays(origins, directions, tnear, tfar, spawn_offset)
         found = Handle()
-        handle = ctypes.c_void_p()
-        run(
-            library.tsr_scene_all,
-            ctypes.byref(handle),
-            self._handle,
-            ctypes.byref(rays.struct),
-            is_long=rays.count > _LONG,
-            makes=handle,
-        )
-        found._handle = handle
+        found._make(library.tsr_scene_all, self._handle, ctypes.byref(rays.struct), is_long=rays.count > _LONG)
         count = ctypes.c_size_t()
         first = np.empty(rays.count + 1, np.uint64)
-        call(library.tsr_hits_read, handle, ctypes.byref(count), address_of(first), None)
+        call(library.tsr_hits_read, found._handle, ctypes.byref(count), address_of(first), None)
         hits = Hits.empty(count.value, quantities)
-        call(library.tsr_hits_read, handle, None, None, ctypes.byref(hits._struct((count.value,))))
+        call(library.tsr_hits_read, found._handle, None, None, ctypes.byref(hits._struct((count.value,))))
         found.close()
         return first.astype(np.int64), hits
 
