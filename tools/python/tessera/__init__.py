@@ -9,7 +9,6 @@
 
 from ._calls import threads
 from ._library import library as _functions
-from .assemblies import Assembly
 from .errors import (
     ArgumentError,
     ArgumentTypeError,
@@ -23,9 +22,10 @@ from .errors import (
 from .jets import Jets
 from .limits import Limits, Measurement, limits, measure
 from .meshes import Mesh, MeshReport, View
-from .models import Instance, Model, Spline, Surface, bezier, model, nurbs, parse, read
-from .patches import Patch, PatchSet
-from .rays import HIT, INVALID_RAY, MISS, Hits, Scene
+from .models import Assembly, Instance, Model, PatchSet, Scene, Surface
+from .patches import Patch
+from .rays import HIT, INVALID_RAY, MISS, Hits
+from .sources import Spline, bezier, model, nurbs, parse, read
 
 _number = _functions.tsr_version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"

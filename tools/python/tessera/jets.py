@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ._arrays import array_of, check_out, in_view, integer_of, names_of, out_view, records_of
-from ._calls import run
+from ._calls import Handle, run
 from ._library import library, struct
 from .errors import ArgumentError
-
-if TYPE_CHECKING:
-    from .patches import PatchSet
 
 #: The quantities and their components.
 QUANTITIES = {
@@ -110,7 +107,7 @@ def _jets_out(jets: Jets, shape: tuple[int, ...], dtype: Any) -> Any:
 
 
 def evaluate_surface(
-    points: PatchSet,
+    points: Handle,
     surfaces: int,
     surface: int,
     u: Any,
@@ -144,7 +141,8 @@ def evaluate_surface(
 
 
 def evaluate_grid(
-    patches: PatchSet,
+    patches: Handle,
+    count: int,
     u: Any,
     v: Any,
     dtype: Any,
@@ -152,11 +150,11 @@ def evaluate_grid(
     quantities: Sequence[str] | None,
     out: Jets | None,
 ) -> Jets:
-    """Evaluates all patches of a set at a grid; see PatchSet.grid()."""
+    """Evaluates all ``count`` patches of a set at a grid; see PatchSet.grid()."""
     u, v = (np.ascontiguousarray(array_of(name, value)) for name, value in (("u", u), ("v", v)))
     if u.ndim != 1 or v.ndim != 1:
         raise ArgumentError(f"u and v: expected two lists of numbers, found shapes {u.shape} and {v.shape}")
-    shape = (len(patches), len(u), len(v))
+    shape = (count, len(u), len(v))
     jets = _new_jets(shape, dtype, derivatives, quantities) if out is None else out
     to = _jets_out(jets, shape, dtype)
     run(
@@ -167,6 +165,6 @@ def evaluate_grid(
         v.__array_interface__["data"][0],
         len(v),
         ctypes.byref(to),
-        is_long=len(patches) * len(u) * len(v) > _LONG,
+        is_long=count * len(u) * len(v) > _LONG,
     )
     return jets

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +15,7 @@ from ._arrays import address_of, integer_of, out_view, pair_of, vectors_of
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError, StateError
-
-if TYPE_CHECKING:
-    from .patches import PatchSet
+from .view import MAX_TRIANGLES, html_of
 
 _RELATIVE, _SHARE, _QUADS, _FEWEST, _SMALLEST, _DOUBLE, _APART = (1 << k for k in range(7))
 
@@ -58,45 +57,45 @@ class _Plan(Handle):
 
     _kind = "plan"
 
-    def __init__(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
+    def __init__(self, patches: Handle, wanted: dict[str, Any], progress: Progress | None) -> None:
         options = struct("tsr_plan_options")
         library.tsr_plan_defaults(ctypes.byref(options))
         _fill(options, wanted)
-        is_long = (len(patches) > _LONG and wanted["rates"] is None) or wanted["fewest"]
-        self._make(
-            library.tsr_plan_new, patches._handle, ctypes.byref(options), progress=progress, is_long=is_long
-        )
+        is_long = (wanted.get("rates") is None and patches._info().patches > _LONG) or wanted.get("fewest", False)
+        self._make(library.tsr_plan_new, patches._handle, ctypes.byref(options), progress=progress, is_long=is_long)
 
 
 MAX_RATE, MAX_PIXELS = 4096, 1 << 20
+_VIEWED = 5e-4  # of the size: less than a pixel of the view in notebooks
 _LONG = 200  # patches, below which a plan is made at once
 
 
 def _fill(options: Any, wanted: dict[str, Any]) -> None:
+    """Fills a tsr_plan_options. ``wanted``: options of PatchSet.tessellate(), and its defaults where one is missing."""
     limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap")
     for name in limits:
-        if wanted[name] is not None:
+        if wanted.get(name) is not None:
             try:
                 setattr(options, name, wanted[name])
             except TypeError:
                 raise ArgumentTypeError(f"{name}: expected a number, found {wanted[name]!r}") from None
-    if wanted["max_triangles"] is not None:
+    if wanted.get("max_triangles") is not None:
         options.max_triangles = integer_of("max_triangles", wanted["max_triangles"], 1, 2**64 - 1)
-    if wanted["rates"] is not None:
+    if wanted.get("rates") is not None:
         options.rate_u, options.rate_v = pair_of("rates", wanted["rates"], 1, MAX_RATE)
-    is_limited = any(wanted[name] is not None for name in ("tolerance", "angle", "pixels", "rates"))
+    is_limited = any(wanted.get(name) is not None for name in ("tolerance", "angle", "pixels", "rates"))
     flags = {
-        _RELATIVE: wanted["relative"],
-        _SHARE: wanted["share_vertices"],
-        _QUADS: wanted["quads"],
-        _FEWEST: wanted["fewest"],
-        _SMALLEST: wanted["max_triangles"] is not None and not is_limited,
-        _DOUBLE: _is_double(wanted["dtype"]),
-        _APART: not wanted["close_edges"],
+        _RELATIVE: wanted.get("relative"),
+        _SHARE: wanted.get("share_vertices"),
+        _QUADS: wanted.get("quads"),
+        _FEWEST: wanted.get("fewest"),
+        _SMALLEST: wanted.get("max_triangles") is not None and not is_limited,
+        _DOUBLE: _is_double(wanted),
+        _APART: not wanted.get("close_edges", True),
     }
     options.flags = sum(flag for flag, is_set in flags.items() if is_set)
-    view = wanted["view"]
-    if wanted["pixels"] is not None and view is None:
+    view = wanted.get("view")
+    if wanted.get("pixels") is not None and view is None:
         raise ArgumentError("pixels: expected a view beside it: view=View(eye=..., target=...)")
     if view is None:
         return
@@ -112,10 +111,11 @@ def _fill(options: Any, wanted: dict[str, Any]) -> None:
         setattr(options, name, integer_of(f"view.{name}", getattr(view, name), 1, MAX_PIXELS))
 
 
-def _is_double(dtype: Any) -> bool:
-    if np.dtype(dtype) not in (np.float32, np.float64):
-        raise ArgumentTypeError(f"dtype: expected float32 or float64, found {np.dtype(dtype)}")
-    return np.dtype(dtype) == np.float64
+def _is_double(wanted: dict[str, Any]) -> bool:
+    dtype = np.dtype(wanted.get("dtype", np.float32))
+    if dtype not in (np.float32, np.float64):
+        raise ArgumentTypeError(f"dtype: expected float32 or float64, found {dtype}")
+    return dtype == np.float64
 
 
 class Mesh:
@@ -153,11 +153,11 @@ class Mesh:
     def __init__(self) -> None:
         self._store: dict[str, np.ndarray] = {}
         self._plan: _Plan | None = None
-        self._set: PatchSet | None = None
+        self._set: Handle | None = None
         self._wanted: dict[str, Any] = {}
         self._tolerance = float("inf")
 
-    def _make(self, patches: PatchSet, wanted: dict[str, Any], progress: Progress | None) -> None:
+    def _make(self, patches: Handle, wanted: dict[str, Any], progress: Progress | None) -> None:
         plan = _Plan(patches, wanted, progress and (lambda share: progress(share / 2)))
         self._set, self._wanted, self._plan = patches, wanted, plan
         self._write(progress and (lambda share: progress(0.5 + share / 2)))
@@ -177,7 +177,7 @@ class Mesh:
     def _take(self, info: Any) -> Any:
         """Takes what is proven from a plan, and memory for its mesh."""
         assert self._set is not None
-        is_double = _is_double(self._wanted["dtype"])
+        is_double = _is_double(self._wanted)
         self._float = self._records("float", info.vertices, 3, np.float32)
         self.vertices = self._records("double", info.vertices, 3, np.float64) if is_double else self._float
         self.normals = self._records("normals", info.vertices, 3, np.float32) if info.has_normals else None
@@ -186,7 +186,7 @@ class Mesh:
         self.patches = self._records("patches", info.triangles, 1, np.uint32)
         self.quads = self._records("quads", info.quads, 4, np.uint32)
         self.quad_patches = self._records("quad_patches", info.quads, 1, np.uint32)
-        self.origin = np.zeros(3) if is_double else self._set.origin
+        self.origin = np.zeros(3) if is_double else np.array(self._set._info().origin)
         self.bound, self.gap, self.angle, self.pixels = info.bound, info.gap, info.angle, info.pixels
         self._tolerance = info.tolerance
         self.is_proven, self.open_edges = bool(info.is_proven), info.open_edges
@@ -304,10 +304,14 @@ class Mesh:
         triangles = f"{len(self.faces):,} triangle{'s' * (len(self.faces) != 1)}"
         return f"<Mesh {len(self.vertices):,} vertices, {triangles}{quads}, {proven}>"
 
-    def _repr_html_(self) -> str:
-        from .view import html_of
+    def _html(self, name: str, note: str = "") -> str:
+        return html_of(name, np.asarray(self.vertices, np.float64), self.triangles(), self.normals, note)
 
-        return html_of(self)
+    def _repr_html_(self) -> str:
+        if len(self.triangles()) <= MAX_TRIANGLES or self._set is None:
+            return self._html(repr(self))
+        mesh = mesh_for_view(self._set)
+        return mesh._html(repr(self), f"; shown with {len(mesh.faces):,} triangles, within {mesh.bound:.3g}")
 
     def __getstate__(self) -> dict[str, Any]:
         state = {name: value for name, value in self.__dict__.items() if name not in ("_plan", "_store")}
@@ -319,6 +323,21 @@ class Mesh:
         self.__dict__.update(state, _plan=None, _store={})
         self.__dict__.setdefault("_float", self.vertices)
         self.__dict__.setdefault("_tolerance", float("inf"))
+
+
+def mesh_for_view(patches: Handle) -> Mesh:
+    """Returns a mesh that is fine enough for the view, or as fine as its triangles allow, or the coarsest of all."""
+    wanted: list[dict[str, Any]] = [{"tolerance": _VIEWED, "relative": True}, {}]
+    for limits in wanted:
+        with contextlib.suppress(ArgumentError):  # it takes more triangles
+            return _made(patches, max_triangles=MAX_TRIANGLES, **limits)
+    return _made(patches, rates=1)
+
+
+def _made(patches: Handle, **wanted: Any) -> Mesh:
+    mesh = Mesh()
+    mesh._make(patches, wanted, None)
+    return mesh
 
 
 def warn_of_rounding(path: str | os.PathLike[str], rounding: float, tolerance: float) -> None:

@@ -1,39 +1,24 @@
-"""Models: the surfaces of a file or of arrays, with names, shapes and instances."""
+"""Models, their patch sets, scenes and assemblies: classes that lead to each other and back."""
 
 from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, index_of, pair_of
-from ._calls import Handle, call, run
+from ._arrays import index_of
+from ._calls import Handle, call
 from ._library import library, struct
-from .errors import ArgumentError, ArgumentTypeError, FileError
 from .jets import Jets, evaluate_surface
-from .patches import PatchSet
+from .meshes import Mesh, warn_of_rounding
+from .patches import PatchSetBase
+from .rays import SceneBase
 
-if TYPE_CHECKING:
-    from .assemblies import Assembly
-
-MAX_DEGREE = 15
 _UNIT, _WARNING, _SURFACE, _KIND, _SHAPE, _INSTANCE = range(6)
-
-
-@dataclass(frozen=True)
-class Spline:
-    """A spline surface: ``points`` (nu, nv, 3), ``degree`` an integer or one per direction, ``knots`` one array per
-    direction, ``weights`` (nu, nv). Without knots it is a Bezier patch; without weights it is polynomial."""
-
-    points: Any
-    degree: int | tuple[int, int] | None = None
-    knots: tuple[Any, Any] | None = None
-    weights: Any = None
-    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,13 +82,10 @@ class Model(Handle):
 
     _kind = "model"
 
-    def __init__(self, source: tuple[Any, ...]) -> None:
-        self._source = source
-        self._point_set: ctypes.c_void_p | None = None
-        handle = ctypes.c_void_p()
-        _make(handle, source)
-        self._handle = handle
-        self._info()
+    def __init__(self, handle: ctypes.c_void_p, made_by: Callable[[], tuple[Any, ...]]) -> None:
+        """``made_by`` returns a function and arguments that make the model again, for pickle."""
+        self._handle, self._made_by = handle, made_by
+        self._point_set: PatchSet | None = None
 
     def _text(self, kind: int, index: int) -> str:
         text = library.tsr_model_text(self._handle, kind, index)
@@ -169,7 +151,9 @@ class Model(Handle):
 
     def join(self, distance: float = 0.0) -> Model:
         """Returns a model whose faces share edges where these run side by side within ``distance``; 0: as suits."""
-        return Model(("join", self, distance))
+        handle = ctypes.c_void_p()
+        call(library.tsr_model_join, ctypes.byref(handle), self._handle, distance)
+        return Model(handle, lambda: (Model.join, (self, distance)))
 
     def patches(
         self,
@@ -192,8 +176,6 @@ class Model(Handle):
     def tessellate(self, tolerance: float | None = None, **options: Any) -> Assembly:
         """Returns a mesh of each shape, at all its places, or of all surfaces if there are no shapes. The options are
         those of PatchSet.tessellate()."""
-        from .assemblies import Assembly
-
         return Assembly(self, tolerance, **options)
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
@@ -217,10 +199,7 @@ class Model(Handle):
         return self.patches()._repr_html_()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        source = self._source
-        if source[0] == "read":
-            source = ("bytes", source[1], _unchanged(*source[1:]))
-        return Model, (source,)
+        return self._made_by()
 
 
 def _counted(count: int, noun: str) -> str:
@@ -237,130 +216,104 @@ def _listed(names: list[str]) -> str:
     return f"{'is' if len(named) == 1 else 'are'} {_shown(named)}" if named else "are no names"
 
 
-def _unchanged(path: str, stamp: tuple[int, int]) -> bytes:
-    """Returns the bytes of a file that a model was read from."""
-    found = os.stat(path)
-    if (found.st_mtime_ns, found.st_size) != stamp:
-        raise FileError(f"{path} changed since it was read, so its model cannot be pickled", "io_error")
-    with open(path, "rb") as file:
-        return file.read()
+class PatchSet(PatchSetBase):
+    """The patches of a model or of one of its shapes. ``patches[index]`` returns one."""
+
+    def __init__(
+        self,
+        model: Model,
+        shape: int | None = None,
+        whole: bool = False,
+        points: bool = False,
+        double: bool = False,
+        fit_tolerance: float | None = None,
+    ) -> None:
+        super().__init__(model, shape, whole, points, double, fit_tolerance)
+        # The set of points belongs to its model, and keeps no reference to it.
+        self.model = None if points else model
+
+    def rays(self, tolerance: float | None = None, pieces: int = 1, editable: bool = False) -> Scene:
+        """Returns a scene for rays. ``editable``: prepared for refit() after edits; rays take a fifth longer."""
+        return Scene(self, tolerance, pieces, editable)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        edited = sorted(self._edited)
+        points = [np.array(self[k].points).reshape(-1, 3) for k in edited]
+        return _unpickled, (self.model, self._options, edited, points)
 
 
-def _make(handle: ctypes.c_void_p, source: tuple[Any, ...]) -> None:
-    """Makes the model of a source: where it is read from, or what it is made of."""
-    kind, *rest = source
-    to = ctypes.byref(handle)
-    if kind == "read":
-        run(library.tsr_model_read, to, os.fsencode(rest[0]), makes=handle)
-    elif kind == "bytes":
-        import tempfile  # as long to import as half of this package
-
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, os.path.basename(rest[0]))
-            with open(path, "wb") as file:
-                file.write(rest[1])
-            run(library.tsr_model_read, to, os.fsencode(path), makes=handle)
-    elif kind == "parse":
-        text = rest[0].encode()
-        call(library.tsr_model_parse, to, text, len(text), os.fsencode(rest[1]))
-    elif kind == "join":
-        call(library.tsr_model_join, to, rest[0]._handle, rest[1])
-    else:
-        _make_splines(to, rest[0])
+def _unpickled(model: Model, options: tuple[Any, ...], edited: list[int], points: list[np.ndarray]) -> PatchSet:
+    patches = PatchSet(model, *options)
+    if edited:
+        patches.edit(edited, np.concatenate(points))
+    return patches
 
 
-def _make_splines(to: Any, splines: Sequence[Spline]) -> None:
-    kept: list[Any] = []  # the memory that the structs point to
-    made = (type(struct("tsr_bspline")) * len(splines))()
-    for index, spline in enumerate(splines):
-        _fill(made[index], spline, kept)
-    call(library.tsr_model_new, to, made, len(splines))
-
-
-def _packed(name: str, value: Any, kept: list[Any]) -> np.ndarray:
-    array = np.ascontiguousarray(array_of(name, value))
-    kept.append(array)
-    return array
-
-
-def _fill(to: Any, spline: Spline, kept: list[Any]) -> None:
-    points = _packed("points", spline.points, kept)
-    if points.ndim != 3 or points.shape[2] != 3:
-        raise ArgumentError(f"points: expected shape (nu, nv, 3), found {points.shape}")
-    to.struct_size = ctypes.sizeof(to)
-    to.count_u, to.count_v = points.shape[:2]
-    to.points = address_of(points)
-    if spline.weights is not None:
-        weights = _packed("weights", spline.weights, kept)
-        if weights.shape != points.shape[:2]:
-            raise ArgumentError(f"weights: expected shape {points.shape[:2]}, found {weights.shape}")
-        to.weights = address_of(weights)
-    if spline.knots is not None:
-        knots_u, knots_v = (_packed(f"knots[{k}]", spline.knots[k], kept) for k in range(2))
-        if knots_u.ndim != 1 or knots_v.ndim != 1:
-            raise ArgumentError(f"knots: expected two lists of numbers, found {knots_u.shape} and {knots_v.shape}")
-        to.knots_u, to.knots_v = address_of(knots_u), address_of(knots_v)
-        to.knot_count_u, to.knot_count_v = len(knots_u), len(knots_v)
-    degree = spline.degree
-    if degree is None and spline.knots is None:
-        degree = (points.shape[0] - 1, points.shape[1] - 1)
-    if degree is None:
-        raise ArgumentTypeError("degree: expected one beside the knots")
-    to.degree_u, to.degree_v = pair_of("degree", degree, 1, MAX_DEGREE)
-    if spline.name:
-        to.name = spline.name.encode()
-
-
-def read(path: str | os.PathLike[str]) -> Model:
-    """Reads a file: .json, .step, .iges, .brep, .g2, .obj, .rib, .bpt, .bv; the extension decides."""
-    name = os.path.abspath(os.fspath(path))
-    try:
-        found = os.stat(name)
-        stamp = (found.st_mtime_ns, found.st_size)
-    except OSError:
-        stamp = (0, 0)  # the library says what is wrong
-    return Model(("read", name, stamp))
-
-
-def parse(text: str, name: str = "text") -> Model:
-    """Reads the text of a JSON file, which has surfaces of every kind; ``name`` stands for the file in messages."""
-    return Model(("parse", text, name))
-
-
-def model(*splines: Spline) -> Model:
-    """Makes a model of spline surfaces."""
-    return Model(("splines", splines))
-
-
-def bezier(points: Any, weights: Any = None, name: str = "") -> Model:
-    """Makes a model of a Bezier patch, ``points`` (nu, nv, 3), or of many, (patches, nu, nv, 3).
-
-    >>> import tessera as ts
-    >>> ts.bezier([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]], name="saddle").patches()
-    <PatchSet 1 patch, 1 surface, size 1.73>
-    """
-    points = np.array(array_of("points", points))
-    weights = None if weights is None else np.array(array_of("weights", weights))
-    if points.ndim != 4:
-        return model(Spline(points, weights=weights, name=name))
-    if weights is not None and weights.shape != points.shape[:3]:
-        raise ArgumentError(f"weights: expected shape {points.shape[:3]}, found {weights.shape}")
-    return model(
-        *(Spline(points[k], weights=None if weights is None else weights[k], name=name) for k in range(len(points)))
-    )
-
-
-def nurbs(
-    degree: int | tuple[int, int], knots: tuple[Any, Any], points: Any, weights: Any = None, name: str = ""
-) -> Model:
-    """Makes a model of a spline surface; see Spline.
+class Scene(SceneBase):
+    """Patches prepared for rays: origin + t * direction. Directions need no unit length. Arrays of shape (..., 3)
+    broadcast, and so do ``tnear`` (0), ``tfar`` (infinity) and ``spawn_offset``: how far from the origin surfaces do
+    not count.
 
     >>> import numpy as np, tessera as ts
-    >>> knots = [0, 0, 0, 1, 2, 2, 2]
-    >>> points = np.stack(np.meshgrid(range(4), range(4), [0.0], indexing="ij"), -1)[:, :, 0]
-    >>> len(ts.nurbs(degree=2, knots=(knots, knots), points=points).patches())
-    4
+    >>> scene = ts.read(goblet).patches().rays()
+    >>> hits = scene.closest(origins=[0, -100, 1], directions=[0, 1, 0])
+    >>> bool(hits.is_hit), bool(hits.certified), hits.position.shape
+    (True, True, (3,))
     """
-    own = tuple(np.array(array_of(f"knots[{k}]", knots[k])) for k in range(2))
-    weights = None if weights is None else np.array(array_of("weights", weights))
-    return model(Spline(np.array(array_of("points", points)), degree, own, weights, name))
+
+    def __init__(self, patches: PatchSet, tolerance: float | None, pieces: int, editable: bool) -> None:
+        super().__init__(patches, tolerance, pieces, editable)
+        self.patches = patches
+
+    def __repr__(self) -> str:
+        return f"<Scene of {self.patches!r}, {self._info().memory_bytes / 2**20:.1f} MiB>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scene, (self.patches, *self._options)
+
+
+class Assembly:
+    """A mesh per shape and the places of the shapes; of a model without shapes one mesh, and no places.
+
+    >>> import tessera as ts
+    >>> ts.read(goblet).tessellate(tolerance=1e-2).meshes[0].is_proven
+    True
+    """
+
+    def __init__(self, model: Model, tolerance: float | None = None, **options: Any) -> None:
+        self.model = model
+        shapes: list[int | None] = list(range(len(model.shapes)))
+        self.meshes: list[Mesh] = [
+            model.patches(shape).tessellate(tolerance, **options) for shape in (shapes or [None])
+        ]
+        self.instances: list[Instance] = model.instances if shapes else []
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes .obj, .ply, .stl, .glb or .gltf, with names and colours."""
+        if not self.instances:
+            self.meshes[0].save(path)
+            return
+        count = len(self.meshes)
+        structs = [mesh._struct() for mesh in self.meshes]
+        pointers = (ctypes.c_void_p * count)(*(ctypes.addressof(each) for each in structs))
+        sets = (ctypes.c_void_p * count)(*(mesh._set._handle for mesh in self.meshes if mesh._set is not None))
+        call(library.tsr_model_save_meshes, self.model._handle, pointers, sets, count, os.fsencode(path))
+        if os.fsdecode(path).lower().endswith(".stl"):
+            warn_of_rounding(path, 2.0**-23 * self._largest(), min(mesh._tolerance for mesh in self.meshes))
+
+    def _largest(self) -> float:
+        """Returns the largest coordinate of all places."""
+        largest = 0.0
+        for instance in self.instances:
+            placed = instance.placement
+            positions = self.meshes[instance.shape].positions()
+            if len(positions):
+                largest = max(largest, np.abs(positions @ placed[:3, :3].T + placed[:3, 3]).max())
+        return largest
+
+    def __repr__(self) -> str:
+        triangles = sum(len(mesh.faces) for mesh in self.meshes)
+        return (
+            f"<Assembly {len(self.meshes):,} mesh{'es' * (len(self.meshes) != 1)}, {len(self.instances):,} "
+            f"instance{'s' * (len(self.instances) != 1)}, {triangles:,} triangles>"
+        )

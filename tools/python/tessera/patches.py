@@ -1,10 +1,10 @@
-"""Patch sets: the Bezier patches of a model, for evaluation, meshes and rays."""
+"""Bezier patches and sets of them, for evaluation and meshes."""
 
 from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +13,7 @@ from ._calls import Handle, Progress, call
 from ._library import library, struct
 from .errors import ArgumentError
 from .jets import Jets, evaluate_grid
-from .meshes import Mesh, View
-from .rays import Scene
-
-if TYPE_CHECKING:
-    from .models import Model
+from .meshes import Mesh, View, mesh_for_view
 
 _WHOLE, _POINTS, _DOUBLE = 1, 2, 4
 
@@ -25,7 +21,7 @@ _WHOLE, _POINTS, _DOUBLE = 1, 2, 4
 class Patch:
     """A Bezier patch of a set. Assign ``points`` to edit it; meshes and scenes follow by update() and refit()."""
 
-    def __init__(self, patches: PatchSet, index: int) -> None:
+    def __init__(self, patches: PatchSetBase, index: int) -> None:
         self._patches, self.index = patches, index
         info = self._read(None, None)
         self.degree: tuple[int, int] = (info.degree_u, info.degree_v)
@@ -77,22 +73,20 @@ class Patch:
         return f"<Patch {self.index}, {kind} of degree {self.degree}, surface {self.surface}{', cut' * self.is_cut}>"
 
 
-class PatchSet(Handle):
-    """The patches of a model or of one of its shapes. ``patches[index]`` returns one."""
+class PatchSetBase(Handle):
+    """What a PatchSet does without its Model."""
 
     _kind = "set"
 
     def __init__(
         self,
-        model: Model,
+        model: Handle,
         shape: int | None = None,
         whole: bool = False,
         points: bool = False,
         double: bool = False,
         fit_tolerance: float | None = None,
     ) -> None:
-        # The set of points belongs to its model, and keeps no reference to it.
-        self.model = None if points else model
         self._options = (shape, whole, points, double, fit_tolerance)
         self._edited: set[int] = set()
         options = struct("tsr_set_options")
@@ -154,7 +148,7 @@ class PatchSet(Handle):
         >>> ts.read(goblet).patches().grid([0, 0.5, 1], [0, 1]).position.shape
         (44, 3, 2, 3)
         """
-        return evaluate_grid(self, u, v, dtype, derivatives, quantities, out)
+        return evaluate_grid(self, self._count, u, v, dtype, derivatives, quantities, out)
 
     def tessellate(
         self,
@@ -204,10 +198,6 @@ class PatchSet(Handle):
         mesh._make(self, wanted, progress)
         return mesh
 
-    def rays(self, tolerance: float | None = None, pieces: int = 1, editable: bool = False) -> Scene:
-        """Returns a scene for rays. ``editable``: prepared for refit() after edits; rays take a fifth longer."""
-        return Scene(self, tolerance, pieces, editable)
-
     def __repr__(self) -> str:
         info = self._info()
         size = float(np.linalg.norm(np.subtract(info.high, info.low)))
@@ -219,18 +209,4 @@ class PatchSet(Handle):
         )
 
     def _repr_html_(self) -> str:
-        from .view import html_of
-
-        return html_of(self)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        edited = sorted(self._edited)
-        points = [np.array(self[k].points).reshape(-1, 3) for k in edited]
-        return _unpickled, (self.model, self._options, edited, points)
-
-
-def _unpickled(model: Model, options: tuple[Any, ...], edited: list[int], points: list[np.ndarray]) -> PatchSet:
-    patches = PatchSet(model, *options)
-    if edited:
-        patches.edit(edited, np.concatenate(points))
-    return patches
+        return mesh_for_view(self)._html(repr(self))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,9 +12,6 @@ from ._arrays import address_of, array_of, check_out, in_view, integer_of, names
 from ._calls import Handle, call, run
 from ._library import library, struct
 from .errors import ArgumentError
-
-if TYPE_CHECKING:
-    from .patches import PatchSet
 
 _BYTE, _INDEX, _DOUBLE = np.dtype(np.uint8), np.dtype(np.uint32), np.dtype(np.float64)
 #: The quantities of a hit: components and type.
@@ -149,22 +146,12 @@ class _Rays:
         setattr(self.struct, name, in_view(flat))
 
 
-class Scene(Handle):
-    """Patches prepared for rays: origin + t * direction. Directions need no unit length. Arrays of shape (..., 3)
-    broadcast, and so do ``tnear`` (0), ``tfar`` (infinity) and ``spawn_offset``: how far from the origin surfaces do
-    not count.
-
-    >>> import numpy as np, tessera as ts
-    >>> scene = ts.read(goblet).patches().rays()
-    >>> hits = scene.closest(origins=[0, -100, 1], directions=[0, 1, 0])
-    >>> bool(hits.is_hit), bool(hits.certified), hits.position.shape
-    (True, True, (3,))
-    """
+class SceneBase(Handle):
+    """What a Scene does without its PatchSet."""
 
     _kind = "scene"
 
-    def __init__(self, patches: PatchSet, tolerance: float | None, pieces: int, editable: bool) -> None:
-        self.patches = patches
+    def __init__(self, patches: Handle, tolerance: float | None, pieces: int, editable: bool) -> None:
         self._options = (tolerance, pieces, editable)
         options = struct("tsr_scene_options")
         library.tsr_scene_defaults(ctypes.byref(options))
@@ -239,9 +226,3 @@ class Scene(Handle):
     def _run(self, function: Any, rays: _Rays, to: Any) -> None:
         is_long = rays.count > _LONG
         run(function, self._handle, ctypes.byref(rays.struct), ctypes.byref(to), is_long=is_long)
-
-    def __repr__(self) -> str:
-        return f"<Scene of {self.patches!r}, {self._info().memory_bytes / 2**20:.1f} MiB>"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Scene, (self.patches, *self._options)

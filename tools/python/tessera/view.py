@@ -3,56 +3,40 @@
 from __future__ import annotations
 
 import base64
-import html
-import json
 import pathlib
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from .errors import ArgumentError
-
-if TYPE_CHECKING:
-    from .meshes import Mesh
-    from .patches import PatchSet
-
 #: Triangles of a view. A larger mesh is shown by another one of its patches, or simplified.
 MAX_TRIANGLES = 50_000
-#: The distance of the mesh of a patch set: less than a pixel of the view.
-_SHARE = 5e-4
 
 
-def html_of(shown: Mesh | PatchSet) -> str:
-    """Returns a frame that shows a mesh, or a mesh of patches; at most 2 MB."""
-    from .meshes import Mesh
+def html_of(name: str, vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None, note: str = "") -> str:
+    """Returns a frame that shows triangles, at most 2 MB. ``name``: what is shown, within brackets."""
+    import html  # here, so that the package is imported sooner
+    import json
 
-    mesh: Any = shown
-    note = ""
-    if not isinstance(shown, Mesh):
-        mesh = _mesh_of(shown)
-    elif len(shown.triangles()) > MAX_TRIANGLES and shown._set is not None:
-        mesh = _mesh_of(shown._set)
-        note = f"; shown with {len(mesh.faces):,} triangles, within {mesh.bound:.3g}"
-    vertices, faces, normals = np.asarray(mesh.vertices, np.float64), mesh.triangles(), mesh.normals
     if len(faces) > MAX_TRIANGLES:
         vertices, faces, normals = *_clustered(vertices, faces), None
         note = f"; shown simplified, with {len(faces):,} triangles"
-    normals = _normals(vertices, faces) if normals is None else normals
-    page = page_of(vertices, faces, normals, repr(shown)[1:-1] + note)
+    data = _data_of(vertices, faces, _normals(vertices, faces) if normals is None else normals)
+    template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
+    page = template.replace("@CAPTION@", html.escape(name[1:-1] + note)).replace("@DATA@", json.dumps(data))
     return (
-        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" title="{html.escape(repr(shown))}" '
+        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" title="{html.escape(name)}" '
         'style="width: 100%; height: 420px; border: 1px solid #ddd"></iframe>'
     )
 
 
-def page_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, caption: str) -> str:
-    """Returns a page that shows triangles."""
+def _data_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray) -> dict[str, Any]:
+    """Returns what the page draws: positions in 16 bits of their box."""
     low = vertices.min(axis=0) if len(vertices) else np.zeros(3)
     size = vertices.max(axis=0) - low if len(vertices) else np.zeros(3)
     scale = np.linalg.norm(size) or 1.0
     positions = np.round((vertices - low) / np.where(size > 0, size, 1) * 65535).astype(np.uint16)
     is_wide = len(vertices) > 65536
-    data = {
+    return {
         "count": int(faces.size),
         "wide": is_wide,
         "half_size": (size / scale).tolist(),
@@ -60,18 +44,6 @@ def page_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, captio
         "normals": _text(_octahedral(normals)),
         "faces": _text(faces.astype(np.uint32 if is_wide else np.uint16)),
     }
-    template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
-    return template.replace("@CAPTION@", html.escape(caption)).replace("@DATA@", json.dumps(data))
-
-
-def _mesh_of(patches: PatchSet) -> Mesh:
-    """Returns a mesh that is fine enough for the view, or as fine as its triangles allow, or the coarsest of all."""
-    for limits in ({"tolerance": _SHARE, "relative": True}, {}):
-        try:
-            return patches.tessellate(max_triangles=MAX_TRIANGLES, **limits)  # type: ignore[arg-type]
-        except ArgumentError:  # it takes more triangles
-            pass
-    return patches.tessellate(rates=1)
 
 
 def _clustered(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

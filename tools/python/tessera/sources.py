@@ -1,0 +1,157 @@
+"""Models of files, of text and of arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ._arrays import address_of, array_of, pair_of
+from ._calls import call, run
+from ._library import library, struct
+from .errors import ArgumentError, ArgumentTypeError, FileError
+from .models import Model
+
+MAX_DEGREE = 15
+
+
+@dataclass(frozen=True)
+class Spline:
+    """A spline surface: ``points`` (nu, nv, 3), ``degree`` an integer or one per direction, ``knots`` one array per
+    direction, ``weights`` (nu, nv). Without knots it is a Bezier patch; without weights it is polynomial."""
+
+    points: Any
+    degree: int | tuple[int, int] | None = None
+    knots: tuple[Any, Any] | None = None
+    weights: Any = None
+    name: str = ""
+
+
+def _packed(name: str, value: Any, kept: list[Any]) -> np.ndarray:
+    array = np.ascontiguousarray(array_of(name, value))
+    kept.append(array)
+    return array
+
+
+def _fill(to: Any, spline: Spline, kept: list[Any]) -> None:
+    points = _packed("points", spline.points, kept)
+    if points.ndim != 3 or points.shape[2] != 3:
+        raise ArgumentError(f"points: expected shape (nu, nv, 3), found {points.shape}")
+    to.struct_size = ctypes.sizeof(to)
+    to.count_u, to.count_v = points.shape[:2]
+    to.points = address_of(points)
+    if spline.weights is not None:
+        weights = _packed("weights", spline.weights, kept)
+        if weights.shape != points.shape[:2]:
+            raise ArgumentError(f"weights: expected shape {points.shape[:2]}, found {weights.shape}")
+        to.weights = address_of(weights)
+    if spline.knots is not None:
+        knots_u, knots_v = (_packed(f"knots[{k}]", spline.knots[k], kept) for k in range(2))
+        if knots_u.ndim != 1 or knots_v.ndim != 1:
+            raise ArgumentError(f"knots: expected two lists of numbers, found {knots_u.shape} and {knots_v.shape}")
+        to.knots_u, to.knots_v = address_of(knots_u), address_of(knots_v)
+        to.knot_count_u, to.knot_count_v = len(knots_u), len(knots_v)
+    degree = spline.degree
+    if degree is None and spline.knots is None:
+        degree = (points.shape[0] - 1, points.shape[1] - 1)
+    if degree is None:
+        raise ArgumentTypeError("degree: expected one beside the knots")
+    to.degree_u, to.degree_v = pair_of("degree", degree, 1, MAX_DEGREE)
+    if spline.name:
+        to.name = spline.name.encode()
+
+
+def read(path: str | os.PathLike[str]) -> Model:
+    """Reads a file: .json, .step, .iges, .brep, .g2, .obj, .rib, .bpt, .bv; the extension decides."""
+    name = os.path.abspath(os.fspath(path))
+    try:
+        stamp = _stamp(name)
+    except OSError:
+        stamp = (0, 0)  # the library says what is wrong
+    return _model_of(name, lambda: (_read_bytes, (name, _unchanged(name, stamp))))
+
+
+def _model_of(path: str, made_by: Callable[[], tuple[Any, ...]]) -> Model:
+    handle = ctypes.c_void_p()
+    run(library.tsr_model_read, ctypes.byref(handle), os.fsencode(path), makes=handle)
+    return Model(handle, made_by)
+
+
+def _stamp(path: str) -> tuple[int, int]:
+    found = os.stat(path)
+    return found.st_mtime_ns, found.st_size
+
+
+def _unchanged(path: str, stamp: tuple[int, int]) -> bytes:
+    """Returns the bytes of a file that a model was read from."""
+    if _stamp(path) != stamp:
+        raise FileError(f"{path} changed since it was read, so its model cannot be pickled", "io_error")
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def _read_bytes(name: str, content: bytes) -> Model:
+    """Reads the bytes of a file, which may lie there no longer."""
+    import tempfile  # as long to import as half of this package
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, os.path.basename(name))
+        with open(path, "wb") as file:
+            file.write(content)
+        return _model_of(path, lambda: (_read_bytes, (name, content)))
+
+
+def parse(text: str, name: str = "text") -> Model:
+    """Reads the text of a JSON file, which has surfaces of every kind; ``name`` stands for the file in messages."""
+    handle, content = ctypes.c_void_p(), text.encode()
+    call(library.tsr_model_parse, ctypes.byref(handle), content, len(content), os.fsencode(name))
+    return Model(handle, lambda: (parse, (text, name)))
+
+
+def model(*splines: Spline) -> Model:
+    """Makes a model of spline surfaces."""
+    kept: list[Any] = []  # the memory that the structs point to
+    made = (type(struct("tsr_bspline")) * len(splines))()
+    for index, spline in enumerate(splines):
+        _fill(made[index], spline, kept)
+    handle = ctypes.c_void_p()
+    call(library.tsr_model_new, ctypes.byref(handle), made, len(splines))
+    return Model(handle, lambda: (model, splines))
+
+
+def bezier(points: Any, weights: Any = None, name: str = "") -> Model:
+    """Makes a model of a Bezier patch, ``points`` (nu, nv, 3), or of many, (patches, nu, nv, 3).
+
+    >>> import tessera as ts
+    >>> ts.bezier([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]], name="saddle").patches()
+    <PatchSet 1 patch, 1 surface, size 1.73>
+    """
+    points = np.array(array_of("points", points))
+    weights = None if weights is None else np.array(array_of("weights", weights))
+    if points.ndim != 4:
+        return model(Spline(points, weights=weights, name=name))
+    if weights is not None and weights.shape != points.shape[:3]:
+        raise ArgumentError(f"weights: expected shape {points.shape[:3]}, found {weights.shape}")
+    return model(
+        *(Spline(points[k], weights=None if weights is None else weights[k], name=name) for k in range(len(points)))
+    )
+
+
+def nurbs(
+    degree: int | tuple[int, int], knots: tuple[Any, Any], points: Any, weights: Any = None, name: str = ""
+) -> Model:
+    """Makes a model of a spline surface; see Spline.
+
+    >>> import numpy as np, tessera as ts
+    >>> knots = [0, 0, 0, 1, 2, 2, 2]
+    >>> points = np.stack(np.meshgrid(range(4), range(4), [0.0], indexing="ij"), -1)[:, :, 0]
+    >>> len(ts.nurbs(degree=2, knots=(knots, knots), points=points).patches())
+    4
+    """
+    own = tuple(np.array(array_of(f"knots[{k}]", knots[k])) for k in range(2))
+    weights = None if weights is None else np.array(array_of("weights", weights))
+    return model(Spline(np.array(array_of("points", points)), degree, own, weights, name))
