@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,6 @@ struct Case {
   double limit_fraction = 0;  ///< share of the machine's limit; 0 if unknown
   std::string error;          ///< empty if the timed result was right
 };
-
-void check(const tessera::Status& status) {
-  if (status.ok()) return;
-  std::fprintf(stderr, "speed: %s\n", status.message().c_str());
-  std::exit(1);
-}
 
 /// The shortest of several calls. Other programs only ever make a call longer. The first call warms up.
 double shortest(const auto& call) {
@@ -48,36 +41,31 @@ tessera::PatchSet make_saddle(int n) {
       std::vector<tessera::Vec3> points;
       for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) points.push_back({a + i / 3.0, b + j / 3.0, (a + i / 3.0) * (b + j / 3.0)});
-      const auto patch = tessera::BezierPatch::polynomial(3, 3, points);
-      check(patch.status());
-      patches.push_back(*patch);
+      patches.push_back(value_or_throw(tessera::BezierPatch::polynomial(3, 3, points)));
     }
-  auto set = tessera::PatchSet::make(patches);
-  check(set.status());
-  return *std::move(set);
+  return value_or_throw(tessera::PatchSet::make(patches));
 }
 
 /// Grids of `rate` x `rate` points with positions and normals, on one thread or on those of the caller's arena.
 Case evaluate_grids(const tessera::PatchSet& set, int rate) {
   const auto parameters = tessera::uniform_parameters(rate);
-  const auto plan = tessera::GridPlan::make(set, parameters, parameters);
-  check(plan.status());
-  std::vector<float> memory(6 * plan->capacity());
+  const auto plan = value_or_throw(tessera::GridPlan::make(set, parameters, parameters));
+  std::vector<float> memory(6 * plan.capacity());
   tessera::QuantityViews<float> views;
   views.position = tessera::View3<float>::interleaved(memory, 6, 0);
   views.normal = tessera::View3<float>::interleaved(memory, 6, 3);
 
   Case found;
   found.name = "grids/" + std::to_string(rate);
-  found.items = static_cast<double>(plan->capacity());
-  found.seconds = shortest([&] { check(evaluate(set, *plan, views)); });
+  found.items = static_cast<double>(plan.capacity());
+  found.seconds = shortest([&] { throw_if_failed(evaluate(set, plan, views)); });
 
-  const auto limits = tessera::measure_limits({.isa = plan->isa(), .store_bytes = memory.size() * sizeof(float)});
-  check(limits.status());
-  const tessera::Work work = plan->work({.position = true, .normal = true});
-  found.limit_fraction = tessera::seconds_at_limit(*limits, work) / found.seconds;
+  const auto limits =
+      value_or_throw(tessera::measure_limits({.isa = plan.isa(), .store_bytes = memory.size() * sizeof(float)}));
+  const tessera::Work work = plan.work({.position = true, .normal = true});
+  found.limit_fraction = tessera::seconds_at_limit(limits, work) / found.seconds;
 
-  for (std::size_t k = 0; k < plan->capacity(); ++k) {  // z = x y, within the precision of float
+  for (std::size_t k = 0; k < plan.capacity(); ++k) {  // z = x y, within the precision of float
     const auto component = [&](int c) { return static_cast<double>(views.position.at(k, c)); };
     const double x = component(0) + set.origin().x, y = component(1) + set.origin().y,
                  z = component(2) + set.origin().z;
@@ -95,16 +83,18 @@ void print(const Case& found, bool last) {
 
 }  // namespace
 
-int main() {
+int main() try {
   const tessera::PatchSet set = make_saddle(20);
   const std::vector<Case> cases = {evaluate_grids(set, 9), evaluate_grids(set, 33)};
 
-  const auto chosen = tessera::default_isa();  // an error if the environment asks for one that is not there
-  check(chosen.status());
-  const std::string isa(name(*chosen));
+  // An error if the environment asks for one that is not there.
+  const std::string isa(name(value_or_throw(tessera::default_isa())));
   std::printf("{\"context\": {\"compiler\": \"%s\", \"build_type\": \"%s\", \"isa\": \"%s\"},\n \"benchmarks\": [\n",
               SPEED_COMPILER, SPEED_BUILD_TYPE, isa.c_str());
   for (const Case& found : cases) print(found, &found == &cases.back());
   std::printf(" ]}\n");
   return std::fflush(stdout) == 0 ? 0 : 1;
+} catch (const tessera::StatusError& error) {
+  std::fprintf(stderr, "speed: %s\n", error.what());
+  return 1;
 }
