@@ -80,8 +80,8 @@ F64Points::Curve F64Points::row_at(Segments::Fraction u) const {
 
 F64Points::Curve F64Points::border_along(Side side) const {
   const bool along_u = runs_along_u(side);
-  Curve border{along_u ? net_.degree_u : net_.degree_v, net_.scale, {}};
-  const int across = side == Side::v1 ? net_.degree_v : side == Side::u1 ? net_.degree_u : 0;
+  Curve border{degree_along(side, net_), net_.scale, {}};
+  const int across = is_far(side) ? (along_u ? net_.degree_v : net_.degree_u) : 0;
   for (int k = 0; k <= border.degree; ++k) border.points[at(k)] = along_u ? net_.at(k, across) : net_.at(across, k);
   return border;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "tessera/geometry.h"
 
@@ -18,6 +19,35 @@ constexpr Side opposite(Side side) { return static_cast<Side>((static_cast<int>(
 constexpr Edge edge_of(Side side) {
   constexpr Edge edges[] = {Edge::v0, Edge::u1, Edge::v1, Edge::u0};
   return edges[static_cast<int>(side)];
+}
+/// Whether the parameter across a border is 1 on it, rather than 0.
+constexpr bool is_far(Side side) { return side == Side::u1 || side == Side::v1; }
+
+/// Returns the member of a value with `u` and `v` that belongs to the parameter along a border, or across it.
+template <class T>
+constexpr auto& along_side(Side side, T& both) {
+  return runs_along_u(side) ? both.u : both.v;
+}
+template <class T>
+constexpr auto& across_side(Side side, T& both) {
+  return runs_along_u(side) ? both.v : both.u;
+}
+/// Returns the range of the parameter along a border, and the border's value of the one across.
+constexpr std::pair<double, double> range_along(Side side, const Domain& domain) {
+  return runs_along_u(side) ? std::pair(domain.u0, domain.u1) : std::pair(domain.v0, domain.v1);
+}
+constexpr double line_of(Side side, const Domain& domain) {
+  const double lines[] = {domain.v0, domain.u1, domain.v1, domain.u0};
+  return lines[static_cast<int>(side)];
+}
+/// Returns the point with these parameters along a border and across it.
+constexpr ParameterPoint point_beside(Side side, double along, double across) {
+  return runs_along_u(side) ? ParameterPoint{along, across} : ParameterPoint{across, along};
+}
+/// Returns the degree along a border of a net with `degree_u` and `degree_v`.
+template <class T>
+constexpr int degree_along(Side side, const T& net) {
+  return runs_along_u(side) ? net.degree_u : net.degree_v;
 }
 
 }}  // namespace tessera::abi_0_1

@@ -85,7 +85,7 @@ struct Division {
 
   bool has_inner_points() const { return inner.u.rate() > 1; }
   /// Returns the segments of the inner points beside a border.
-  Segments inner_along(Side side) const { return runs_along_u(side) ? inner.u : inner.v; }
+  Segments inner_along(Side side) const { return along_side(side, inner); }
   /// A border's segments, and those of the inner points beside it, in the direction of the ring.
   Segments along_ring(Side side) const { return as_ring_runs(border[static_cast<std::size_t>(side)], side); }
   Segments inner_along_ring(Side side) const { return as_ring_runs(inner_along(side), side); }

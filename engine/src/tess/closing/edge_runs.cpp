@@ -14,15 +14,15 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// Returns where a piece has a value of u, or v, from 0 to 1.
+/// Returns where a piece has a place along a side, from 0 to 1.
 ///
-/// The piece is monotone, so the Bernstein polynomial of w_i (x_i - value) has one root. It is found by Newton's
+/// The piece is monotone, so the Bernstein polynomial of w_i (x_i - place) has one root. It is found by Newton's
 /// method, by halves where that would leave the root's interval.
-double place_on(const TrimPiece& piece, bool along_u, double value) {
+double place_on(const TrimPiece& piece, Side side, double place) {
   const auto last = static_cast<std::size_t>(piece.curve.degree());
   std::array<double, max_degree + 1> c, of;
   for (std::size_t k = 0; k <= last; ++k)
-    c[k] = piece.curve.weight(k) * (along_of(piece.curve.points[k], along_u) - value);
+    c[k] = piece.curve.weight(k) * (along_side(side, piece.curve.points[k]) - place);
   if (c[0] == 0 || c[last] == 0) return c[0] == 0 ? 0 : 1;
   double low = 0, high = 1, x = std::clamp(c[0] / (c[0] - c[last]), 0.0, 1.0);
   if (last == 1) return x;
@@ -41,25 +41,23 @@ double place_on(const TrimPiece& piece, bool along_u, double value) {
   return x;
 }
 
-/// A line between patches along which a piece runs, if it does.
-enum class Along : std::uint8_t { none, u, v };
-Along along_of(const TrimPiece& piece, const CutLines& lines) {
+/// The side, of a patch above it, of the line between patches along which a piece runs; none if it runs along none.
+std::optional<Side> line_of(const TrimPiece& piece, const CutLines& lines) {
   const ParameterPoint &start = piece.start(), &end = piece.end();
-  if (start.v == end.v && lines.v.is_line(start.v)) return Along::u;
-  return start.u == end.u && lines.u.is_line(start.u) ? Along::v : Along::none;
+  if (start.v == end.v && lines.v.is_line(start.v)) return Side::v0;
+  return start.u == end.u && lines.u.is_line(start.u) ? std::optional(Side::u0) : std::nullopt;
 }
 
 /// Whether a piece goes on within the patch, and along the side, of the piece before it.
-bool goes_on(const TrimPiece& before, const TrimPiece& next, Along along, const CutLines& lines) {
+bool goes_on(const TrimPiece& before, const TrimPiece& next, std::optional<Side> line, const CutLines& lines) {
   if (before.loop != next.loop || before.curve_index != next.curve_index || !(before.end() == next.start()))
     return false;
-  if (along_of(next, lines) != along) return false;
+  if (line_of(next, lines) != line) return false;
   const ParameterPoint& at = next.start();
-  if (along == Along::none) return !lines.u.is_line(at.u) && !lines.v.is_line(at.v);
-  const bool along_u = along == Along::u;
-  if ((along_u ? lines.u : lines.v).is_line(along_of(at, along_u))) return false;
-  return (along_of(before.start(), along_u) < along_of(at, along_u)) ==
-         (along_of(at, along_u) < along_of(next.end(), along_u));
+  if (!line) return !lines.u.is_line(at.u) && !lines.v.is_line(at.v);
+  const double place = along_side(*line, at);
+  if (along_side(*line, lines).is_line(place)) return false;
+  return (along_side(*line, before.start()) < place) == (place < along_side(*line, next.end()));
 }
 
 /// A whole border of a patch along an edge.
@@ -74,10 +72,8 @@ struct WholeBorder {
 std::optional<WholeBorder> whole_border(const EdgeRuns& runs, const EdgeRun& run, const PatchSet::Impl& set) {
   if (!run.is_side) return {};
   const std::span<const TrimPiece> pieces = runs.pieces(run);
-  const bool along_u = runs_along_u(run.side);
-  const Domain& domain = set.sources[run.patch].domain;
-  const double begin = along_u ? domain.u0 : domain.v0, end = along_u ? domain.u1 : domain.v1;
-  if (ends_of(pieces, along_u) != std::pair(begin, end)) return {};
+  const auto [begin, end] = range_along(run.side, set.sources[run.patch].domain);
+  if (ends_along(run.side, pieces) != std::pair(begin, end)) return {};
   const CurveAlongEdge curve = runs.curve(run);
   const auto [low, high] =
       std::minmax({curve.to_edge(pieces.front().range.from), curve.to_edge(pieces.back().range.to)});
@@ -89,11 +85,11 @@ bool are_in_step(const EdgeRuns& runs, const WholeBorder& a, const WholeBorder& 
   if (std::abs(a.low - b.low) > same || std::abs(a.high - b.high) > same) return false;
   const auto quarter = [&](const WholeBorder& of, int k) {
     const std::span<const TrimPiece> pieces = runs.pieces(*of.run);
-    const bool along_u = runs_along_u(of.run->side);
-    const bool grows = along_of(pieces.front().start(), along_u) < along_of(pieces.back().end(), along_u);
+    const Side side = of.run->side;
+    const bool grows = along_side(side, pieces.front().start()) < along_side(side, pieces.back().end());
     const CurveAlongEdge curve = runs.curve(*of.run);
     const double at = line_at(of.from, of.to, Segments(4), grows == !curve.coedge->reversed ? k : 4 - k);
-    return curve.to_edge(parameter_at(pieces, along_u, at));
+    return curve.to_edge(parameter_at(pieces, side, at));
   };
   for (int k = 1; k <= 3; ++k)
     if (std::abs(quarter(a, k) - quarter(b, k)) > same) return false;
@@ -111,13 +107,13 @@ std::size_t cell_of(std::span<const double> lines, double value) {
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - lines.begin() - 1, 0, std::ssize(lines) - 2));
 }
 
-double parameter_at(std::span<const TrimPiece> pieces, bool along_u, double value) {
-  const bool grows = along_of(pieces.front().start(), along_u) < along_of(pieces.back().end(), along_u);
+double parameter_at(std::span<const TrimPiece> pieces, Side side, double place) {
+  const bool grows = along_side(side, pieces.front().start()) < along_side(side, pieces.back().end());
   const auto piece = std::ranges::partition_point(pieces.first(pieces.size() - 1), [&](const TrimPiece& of) {
-    const double end = along_of(of.end(), along_u);
-    return grows ? end < value : end > value;
+    const double end = along_side(side, of.end());
+    return grows ? end < place : end > place;
   });
-  return piece->range.from + place_on(*piece, along_u, value) * (piece->range.to - piece->range.from);
+  return piece->range.from + place_on(*piece, side, place) * (piece->range.to - piece->range.from);
 }
 
 ParameterPoint point_at(std::span<const TrimPiece> pieces, double t) {
@@ -162,16 +158,16 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
     const TrimPiece& at = pieces[run.first];
     const Coedge* const coedge = curve(face, at).coedge;
     if (!coedge && at.curve_index != no_id) continue;
-    const Along along = along_of(at, region.lines);
-    while (piece < pieces.size() && goes_on(pieces[piece - 1], pieces[piece], along, region.lines)) ++piece;
+    const std::optional<Side> line = line_of(at, region.lines);
+    while (piece < pieces.size() && goes_on(pieces[piece - 1], pieces[piece], line, region.lines)) ++piece;
     run.end = piece;
     run.face = face;
     if (coedge) {
       run.edge = of.first_edge + coedge->edge;
       run.use = first_uses[at.loop] + at.curve_index;
     }
-    if (along != Along::none) {
-      find_side(run, along == Along::u, sides);
+    if (line) {
+      find_side(run, *line, sides);
     } else {
       const std::size_t a = cell_of(region.lines.u.lines, (at.start().u + at.end().u) / 2);
       run.patch = of.patches[a * region.count_v() + cell_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
@@ -182,30 +178,30 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
 }
 
 // A piece along a line has the face on one side of it. If both patches there are in the set, loops cut at least one.
-void EdgeRuns::find_side(EdgeRun& run, bool along_u, std::optional<FaceSides>& sides) const {
+void EdgeRuns::find_side(EdgeRun& run, Side low, std::optional<FaceSides>& sides) const {
   const PatchEdges::Face& face = edges_->faces[run.face];
   const TrimRegion::Impl& region = impl_of(face.region);
   const TrimPiece& at = region.pieces[run.first];
-  const std::vector<double>& across = along_u ? region.lines.v.lines : region.lines.u.lines;
-  const std::vector<double>& along = along_u ? region.lines.u.lines : region.lines.v.lines;
-  const double middle = (along_of(at.start(), along_u) + along_of(region.pieces[run.end - 1].end(), along_u)) / 2;
-  const double value = along_u ? at.start().v : at.start().u;
+  const std::vector<double>& across = across_side(low, region.lines).lines;
+  const std::vector<double>& along = along_side(low, region.lines).lines;
+  const double middle = (along_side(low, at.start()) + along_side(low, region.pieces[run.end - 1].end())) / 2;
+  const double value = across_side(low, at.start());
   const auto line = static_cast<std::size_t>(std::ranges::lower_bound(across, value) - across.begin());
   const std::size_t cell = cell_of(along, middle);
   const auto patch_at = [&](std::size_t strip) {
     if (strip + 1 >= across.size()) return no_id;
-    return face.patches[along_u ? cell * region.count_v() + strip : strip * region.count_v() + cell];
+    return face.patches[runs_along_u(low) ? cell * region.count_v() + strip : strip * region.count_v() + cell];
   };
   const std::uint32_t below = line > 0 ? patch_at(line - 1) : no_id, above = patch_at(line);
   bool is_above = below == no_id;
   if (below != no_id && above != no_id) {
     if (!sides) sides.emplace(face.region);
-    for (const SidePoint& point : (along_u ? sides->v : sides->u).points(line, cell, Segments(1)))
+    for (const SidePoint& point : across_side(low, *sides).points(line, cell, Segments(1)))
       if (point.at <= middle) is_above = point.above;
   }
   run.is_side = true;
   run.patch = is_above ? above : below;
-  run.side = along_u ? (is_above ? Side::v0 : Side::v1) : (is_above ? Side::u0 : Side::u1);
+  run.side = is_above ? low : opposite(low);
 }
 
 std::vector<std::uint8_t> EdgeRuns::borders_that_meet(std::size_t patches) const {

@@ -84,9 +84,9 @@ class EdgeRuns {
 
  private:
   void add_face(const PatchSet::Impl& set, std::uint32_t face);
-  /// Finds the patch and the side of a run along a line between patches. `sides`: those of the face, once they are
-  /// known.
-  void find_side(EdgeRun& run, bool along_u, std::optional<FaceSides>& sides) const;
+  /// Finds the patch and the side of a run along a line between patches. `low`: the side along
+  /// that line of the patch above it; `sides`: those of the face, once they are known.
+  void find_side(EdgeRun& run, Side low, std::optional<FaceSides>& sides) const;
   void sort();
 
   const PatchEdges* edges_;
@@ -96,16 +96,14 @@ class EdgeRuns {
   std::uint32_t next_use_ = 0;
 };
 
-/// The coordinate of a point along u, or along v.
-inline double along_of(const ParameterPoint& at, bool along_u) { return along_u ? at.u : at.v; }
-/// Returns the places along u, or v, at which pieces that follow each other begin and end, the lesser one first.
-inline std::pair<double, double> ends_of(std::span<const TrimPiece> pieces, bool along_u) {
-  return std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
+/// Returns the places along a side at which pieces that follow each other begin and end, the lesser one first.
+inline std::pair<double, double> ends_along(Side side, std::span<const TrimPiece> pieces) {
+  return std::minmax({along_side(side, pieces.front().start()), along_side(side, pieces.back().end())});
 }
 /// Returns the cell of growing lines in which a value lies.
 std::size_t cell_of(std::span<const double> lines, double value);
-/// Returns the parameter of the caller's curve where pieces that follow each other have a value of u, or of v.
-double parameter_at(std::span<const TrimPiece> pieces, bool along_u, double value);
+/// Returns the parameter of the caller's curve where pieces that follow each other have a place along a side.
+double parameter_at(std::span<const TrimPiece> pieces, Side side, double place);
 /// Returns the point of pieces that follow each other at a parameter of the caller's curve, within the piece's box.
 ParameterPoint point_at(std::span<const TrimPiece> pieces, double t);
 

@@ -66,7 +66,6 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   const CurveAlongEdge curve = runs_.curve(run);
   join_corner(runs_.edges().faces[run.face], pieces.front().start());
   join_corner(runs_.edges().faces[run.face], pieces.back().end());
-  const bool along_u = runs_along_u(run.side);
   const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != no_id
                             : divisions_[run.patch].collapsed.has(edge_of(run.side));
   if (is_point) {
@@ -76,8 +75,7 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
            pieces.front().range.from, pieces.back().range.to, segments);
     return;
   }
-  const auto [from, to] =
-      std::minmax({along_of(pieces.front().start(), along_u), along_of(pieces.back().end(), along_u)});
+  const auto [from, to] = ends_along(run.side, pieces);
   std::optional<double> before;  // the parameter where the last segment ends
   std::span<const double> inside;
   if (stations_ && run.edge != no_id) inside = stations_->at_vertices(run);
@@ -86,9 +84,9 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
     const Place start = std::exchange(end, side[k]);
     const double low = std::max(start.along, from), high = std::min(end.along, to);
     if (!(low < high)) continue;
-    if (!before) before = parameter_at(pieces, along_u, low);
+    if (!before) before = parameter_at(pieces, run.side, low);
     const bool is_known = end.along < to && !inside.empty();
-    const double next = is_known ? inside.front() : parameter_at(pieces, along_u, high);
+    const double next = is_known ? inside.front() : parameter_at(pieces, run.side, high);
     if (is_known) inside = inside.subspan(1);
     append({.run = &run,
             .low = vertex_at(run.patch, run.side, start, end, low),
@@ -123,9 +121,8 @@ PatchVertex EdgeSegments::vertex_at(std::uint32_t patch, Side side, const Place&
 PatchVertex EdgeSegments::insert_on_side(std::uint32_t patch, Side side, std::uint32_t start, std::uint32_t end,
                                          double along) {
   const Domain domain = set_.sources[patch].domain;
-  const double across = side == Side::u1 || side == Side::v1 ? 1 : 0;
-  const ParameterPoint local = runs_along_u(side) ? ParameterPoint{domain.local_u(along), across}
-                                                  : ParameterPoint{across, domain.local_v(along)};
+  const double place = runs_along_u(side) ? domain.local_u(along) : domain.local_v(along);
+  const ParameterPoint local = point_beside(side, place, is_far(side));
   inserted_.push_back({patch, start, end, along, local});
   return {patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
 }
@@ -135,8 +132,7 @@ PatchVertex EdgeSegments::insert(const EdgeSegment& segment, double s) {
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
   const double t = runs_.curve(run).to_curve(s);
   const ParameterPoint at = point_at(pieces, t);
-  if (run.is_side)
-    return insert_on_side(run.patch, run.side, segment.start, segment.end, along_of(at, runs_along_u(run.side)));
+  if (run.is_side) return insert_on_side(run.patch, run.side, segment.start, segment.end, along_side(run.side, at));
   const Domain domain = set_.sources[run.patch].domain;
   inserted_.push_back({run.patch,
                        segment.start,

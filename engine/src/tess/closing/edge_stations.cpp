@@ -73,13 +73,13 @@ void EdgeStations::add_vertices(const EdgeRun& run, const Domain& domain, const 
                                 std::vector<double>& found) {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
   const CurveAlongEdge curve = runs_->curve(run);
-  const bool along_u = runs_along_u(run.side);
-  const auto [low, high] = ends_of(pieces, along_u);
+  const auto [low, high] = ends_along(run.side, pieces);
+  const auto [begin, end] = range_along(run.side, domain);
   std::vector<double>& parameters = of(run).chords.parameters;
   for (int k = 0; k <= segments.rate(); ++k) {
-    const double at = line_at(along_u ? domain.u0 : domain.v0, along_u ? domain.u1 : domain.v1, segments, k);
+    const double at = line_at(begin, end, segments, k);
     if (!(at > low && at < high)) continue;
-    parameters.push_back(parameter_at(pieces, along_u, at));
+    parameters.push_back(parameter_at(pieces, run.side, at));
     found.push_back(curve.to_edge(parameters.back()));
   }
 }
@@ -112,9 +112,8 @@ bool EdgeStations::is_laid(const EdgeRun& run, double same) const {
 
 void EdgeStations::add_segments(const EdgeRun& run, const ChordLimits& limits, std::vector<double>& found) {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
-  const bool along_u = runs_along_u(run.side);
-  const double longest = (along_u ? limits.box.u : limits.box.v) * (1 + 0x1p-40);
-  const auto [low, high] = ends_of(pieces, along_u);
+  const double longest = along_side(run.side, limits.box) * (1 + 0x1p-40);
+  const auto [low, high] = ends_along(run.side, pieces);
   const CurveAlongEdge curve = runs_->curve(run);
   list_along(run);
   std::vector<double> places = of(run).along;
@@ -123,7 +122,7 @@ void EdgeStations::add_segments(const EdgeRun& run, const ChordLimits& limits, s
   for (const double place : places) {
     const int count = static_cast<int>(std::ceil((place - before) / longest));
     for (int k = 1; k < count; ++k)
-      found.push_back(curve.to_edge(parameter_at(pieces, along_u, before + (place - before) * k / count)));
+      found.push_back(curve.to_edge(parameter_at(pieces, run.side, before + (place - before) * k / count)));
     before = place;
   }
 }
@@ -151,13 +150,13 @@ void EdgeStations::list_along(const EdgeRun& run) {
   list(run);
   RunStations& of_run = of(run);
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
-  const bool along_u = runs_along_u(run.side);
-  const auto [low, high] = ends_of(pieces, along_u);
+  const auto [low, high] = ends_along(run.side, pieces);
   of_run.side = run.side, of_run.low = low, of_run.high = high;
   of_run.along.clear();
   for (const double t : of_run.at) {
     if (t <= pieces.front().range.from + of_run.same || t >= pieces.back().range.to - of_run.same) continue;
-    const double place = along_of(point_at(pieces, t), along_u);
+    const ParameterPoint at = point_at(pieces, t);
+    const double place = along_side(run.side, at);
     if (place > low && place < high) of_run.along.push_back(place);
   }
   std::ranges::sort(of_run.along);

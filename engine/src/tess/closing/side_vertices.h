@@ -26,8 +26,8 @@ class SideVertices {
   SideVertices(const Division& division, const Domain& domain, Side side)
       : division_(&division),
         side_(side),
-        from_(runs_along_u(side) ? domain.u0 : domain.v0),
-        to_(runs_along_u(side) ? domain.u1 : domain.v1) {
+        from_(range_along(side, domain).first),
+        to_(range_along(side, domain).second) {
     if (division.empty) return;
     segments_ = division.border[static_cast<std::size_t>(side)];
     size_ = static_cast<std::size_t>(segments_.rate()) + 1;

@@ -11,7 +11,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-constexpr Segments along(PatchSegments patch, Side side) { return runs_along_u(side) ? patch.u : patch.v; }
+constexpr Segments along(PatchSegments patch, Side side) { return along_side(side, patch); }
 
 /// The needs of patches with uniform segments.
 struct EdgeNeeds {

@@ -22,7 +22,7 @@ struct BorderPlaces {
     const std::ptrdiff_t column = components * std::ptrdiff_t{PatchSet::lanes}, row = column * (group.degree_v + 1);
     first = side == Side::v1 ? column * group.degree_v : side == Side::u1 ? row * group.degree_u : 0;
     step = runs_along_u(side) ? row : column;
-    count = (runs_along_u(side) ? group.degree_u : group.degree_v) + 1;
+    count = degree_along(side, group) + 1;
   }
 };
 

@@ -13,7 +13,7 @@ namespace tessera { inline namespace abi_0_1 {
 SideCurve::SideCurve(const BezierPatch& patch, Side side) {
   const bool along_u = runs_along_u(side);
   degree_ = along_u ? patch.degree_u() : patch.degree_v();
-  const int across = along_u ? (side == Side::v1 ? patch.degree_v() : 0) : (side == Side::u1 ? patch.degree_u() : 0);
+  const int across = !is_far(side) ? 0 : along_u ? patch.degree_v() : patch.degree_u();
   const auto index = [&](int k) { return along_u ? std::array{k, across} : std::array{across, k}; };
   const auto weight_at = [&](int k) { return patch.weight(index(k)[0], index(k)[1]); };
   const double ends = 0.5 * weight_at(0) + 0.5 * weight_at(degree_);

@@ -183,7 +183,7 @@ double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) c
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
     const Segments border = division.border[s], opposite = division.border[(s + 2) % 4];
-    if (!(runs_along_u(side) ? segments.u : segments.v).parts_halves() || border.parts_halves()) continue;
+    if (!along_side(side, segments).parts_halves() || border.parts_halves()) continue;
     const int rate =
         opposite.parts_halves() ? border.coarsest_rate() : std::min(border.coarsest_rate(), opposite.coarsest_rate());
     assert(segments.are_uniform());  // if they are not, the border has a point at 1/2

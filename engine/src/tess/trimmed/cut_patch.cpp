@@ -145,21 +145,16 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
   out.open_edges = 0;
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
-    const bool along_u = runs_along_u(side), above = side == Side::v0 || side == Side::u0;
-    const PatchSides& lines = along_u ? sides.v : sides.u;
-    const std::size_t line = (along_u ? b : a) + !above;
-    std::vector<SidePoint> points = lines.points(line, along_u ? a : b, borders[s]);
+    const bool above = !is_far(side);
+    const PatchSides& lines = across_side(side, sides);
+    const std::size_t line = (runs_along_u(side) ? b : a) + !above;
+    std::vector<SidePoint> points = lines.points(line, runs_along_u(side) ? a : b, borders[s]);
     if (limits.stations) limits.stations->put_on_side(side, points);
-    const double across = side == Side::v0   ? limits.domain.v0
-                          : side == Side::v1 ? limits.domain.v1
-                          : side == Side::u0 ? limits.domain.u0
-                                             : limits.domain.u1;
-    const double from = along_u ? limits.domain.u0 : limits.domain.v0,
-                 to = along_u ? limits.domain.u1 : limits.domain.v1;
-    const auto is_even = [&](std::size_t k) {
+    const auto [from, to] = range_along(side, limits.domain);
+    const auto is_even = [&, from = from, to = to](std::size_t k) {
       return points[k].at == line_at(from, to, borders[s], static_cast<int>(k));
     };
-    out.is_full[s] = cutter_.add_side(points, across, along_u, above) == static_cast<std::size_t>(borders[s].rate());
+    out.is_full[s] = cutter_.add_side(points, side) == static_cast<std::size_t>(borders[s].rate());
     for (std::size_t k = 0; k < points.size() && out.is_full[s]; ++k) out.is_full[s] = is_even(k);
     out.is_shared[s] = !out.is_full[s] && lines.is_outer(line) && limits.is_shared[s];
     if (out.is_full[s] || out.is_shared[s]) continue;
@@ -181,13 +176,11 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
   const auto add = [&](std::uint32_t vertex) {
     ParameterPoint at = cutter_.local(vertex);
     for (const Side side : all_sides) {
-      const double across = runs_along_u(side) ? at.v : at.u;
-      const bool is_on = across == (side == Side::u1 || side == Side::v1 ? 1 : 0);
-      if (!is_on || !collapsed.has(edge_of(side))) continue;
+      if (across_side(side, at) != is_far(side) || !collapsed.has(edge_of(side))) continue;
       std::uint32_t& pole = out.poles[static_cast<std::size_t>(side)];
       if (pole != no_id) return pole;
       pole = static_cast<std::uint32_t>(out.vertices.size());
-      (runs_along_u(side) ? at.u : at.v) = 0;
+      along_side(side, at) = 0;
       break;
     }
     points_.push_back(cutter_.point(vertex));
@@ -349,14 +342,12 @@ void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders,
                                          CutPatch& out) {
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
-    const bool along_u = runs_along_u(side);
-    const double from = along_u ? domain.u0 : domain.v0, to = along_u ? domain.u1 : domain.v1;
-    const double across = side == Side::u1 || side == Side::v1 ? 1 : 0;
+    const auto [from, to] = range_along(side, domain);
     lines_.clear();
     for (int k = 0; k <= borders[s].rate(); ++k) lines_.push_back(line_at(from, to, borders[s], k));
     for (std::uint32_t vertex = 0; vertex < out.vertices.size(); ++vertex) {
-      if ((along_u ? out.vertices[vertex].v : out.vertices[vertex].u) != across) continue;
-      const double at = along_u ? points_[vertex].u : points_[vertex].v;
+      if (across_side(side, out.vertices[vertex]) != is_far(side)) continue;
+      const double at = along_side(side, points_[vertex]);
       if (all && !std::isnan(at)) out.side_vertices.push_back({vertex, side, at});
       const auto line = std::ranges::lower_bound(lines_, at);
       if (line != lines_.end() && *line == at)
@@ -368,15 +359,10 @@ void CutPatchMaker::find_border_vertices(const std::array<Segments, 4>& borders,
     const std::uint32_t pole = out.poles[side];
     if (pole == no_id) continue;
     const Side beside = all_sides[side];
-    const bool along_u = runs_along_u(beside);
-    const double at = beside == Side::v0   ? domain.v0
-                      : beside == Side::v1 ? domain.v1
-                      : beside == Side::u0 ? domain.u0
-                                           : domain.u1;
     std::erase_if(out.side_vertices,
                   [&](const CutPatch::SideVertex& v) { return v.vertex == pole && v.side != beside; });
-    for (const Side other : along_u ? std::array{Side::u0, Side::u1} : std::array{Side::v0, Side::v1})
-      out.side_vertices.push_back({pole, other, at});
+    for (const Side other : {all_sides[(side + 1) % 4], all_sides[(side + 3) % 4]})
+      out.side_vertices.push_back({pole, other, line_of(beside, domain)});
   }
   std::ranges::sort(out.side_vertices, {}, [](const CutPatch::SideVertex& v) { return std::pair(v.side, v.along); });
 }

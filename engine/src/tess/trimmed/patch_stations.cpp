@@ -10,7 +10,6 @@ const RunStations* PatchStations::run_of(std::uint32_t piece) const {
 }
 
 void PatchStations::put_on_side(Side side, std::vector<SidePoint>& points) const {
-  const bool is_above = side == Side::u0 || side == Side::v0;
   for (const RunStations* const run : on_sides) {
     if (run->side != side) continue;
     const auto first = std::ranges::upper_bound(points, run->low, {}, &SidePoint::at);
@@ -19,7 +18,7 @@ void PatchStations::put_on_side(Side side, std::vector<SidePoint>& points) const
     // A run without length ends at the point before `first`, so the search for its end begins there.
     const auto last = std::ranges::lower_bound(first, points.end(), run->high, {}, &SidePoint::at);
     const auto is_other = [&](const SidePoint& of) { return of.below != from.below || of.above != from.above; };
-    if ((is_above ? from.below : from.above) || std::any_of(first, last, is_other)) continue;
+    if ((is_far(side) ? from.above : from.below) || std::any_of(first, last, is_other)) continue;
     std::vector<SidePoint> inside;
     for (const double place : run->along) inside.push_back({place, from.below, from.above});
     points.insert(points.erase(first, last), inside.begin(), inside.end());

@@ -49,19 +49,17 @@ std::uint32_t PatchCutter::add_point(const ParameterPoint& point) {
   return static_cast<std::uint32_t>(points_.size() - 1);
 }
 
-std::size_t PatchCutter::add_side(std::span<const SidePoint> side, double across, bool runs_along_u, bool above) {
-  const auto at = [&](double along) {
-    return runs_along_u ? ParameterPoint{along, across} : ParameterPoint{across, along};
-  };
+std::size_t PatchCutter::add_side(std::span<const SidePoint> points, Side side) {
+  const auto at = [&](double along) { return point_beside(side, along, line_of(side, patch_.domain)); };
   const std::size_t before = chords_.size();
   std::uint32_t last = no_id;
-  for (std::size_t k = 0; k + 1 < side.size(); ++k) {
-    if (!(above ? side[k].above : side[k].below)) {
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    if (!(is_far(side) ? points[k].below : points[k].above)) {
       last = no_id;
       continue;
     }
-    if (last == no_id) last = add_point(at(side[k].at));
-    const std::uint32_t next = add_point(at(side[k + 1].at));
+    if (last == no_id) last = add_point(at(points[k].at));
+    const std::uint32_t next = add_point(at(points[k + 1].at));
     chords_.push_back({last, next});
     marks_.push_back(no_id);
     last = next;

@@ -55,9 +55,8 @@ class PatchCutter {
  public:
   /// Begins a polygon.
   void begin(const TrimmedPatch& patch);
-  /// Adds the kept parts of a side: points at `along`, the other coordinate is `across`. `above`: the patch lies at
-  /// larger parameters across the side. Returns the number of chords.
-  std::size_t add_side(std::span<const SidePoint> side, double across, bool runs_along_u, bool above);
+  /// Adds the kept parts of a side, by its points. Returns the number of chords.
+  std::size_t add_side(std::span<const SidePoint> points, Side side);
   /// Adds the pieces of loops with these indices, in the order of the loops. Returns the number of chords that are no
   /// points.
   std::size_t add_pieces(std::span<const TrimPiece> pieces, std::span<const std::uint32_t> indices);

@@ -250,7 +250,7 @@ class TableMaker {
     if (division.empty) return;
     const bool by_points = with_points_ && MeshTables::takes_points(group, division);
     for (const Side side : all_sides) {
-      const MeshTables::Border wanted{.degree = runs_along_u(side) ? group.degree_u : group.degree_v,
+      const MeshTables::Border wanted{.degree = degree_along(side, group),
                                       .by_points = by_points,
                                       .backward = is_backward(side),
                                       .collapsed = division.collapsed.has(edge_of(side)),

@@ -165,8 +165,7 @@ void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const 
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
     kernel::MeshBorder& border = job.border[s];
-    border.weights =
-        tables_.border_weights(runs_along_u(side) ? group.degree_u : group.degree_v, division.along_ring(side));
+    border.weights = tables_.border_weights(degree_along(side, group), division.along_ring(side));
     border.is_point = division.collapsed.has(edge_of(side));
     if (!border.is_point && !group.rational) continue;  // other borders use neither start nor scale
     vertices.starts[s] = start_of(set_.patches[k], set_.origin, side);
@@ -191,7 +190,7 @@ void PatchWriter::write_parameters(std::size_t k) const {
     const int rate = division.border[s].rate(), last = plan_.owns_border(4 * k + s) ? rate : 1;
     for (int n = plan_.owns_corner(4 * k + s) ? 0 : 1; n < last; ++n) {
       const float t = along[is_backward(side) ? rate - n : n];
-      const float across = side == Side::u1 || side == Side::v1 ? 1.0f : 0.0f;
+      const float across = is_far(side);
       runs_along_u(side) ? put(t, across) : put(across, t);
     }
   }

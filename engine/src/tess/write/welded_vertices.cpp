@@ -39,9 +39,8 @@ Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, c
     if (!owns(k)) continue;
     const Segments::Fraction at = plan.division(pole.to / 4).along_ring(side).at(k);
     const double t = is_backward(side) ? at.rest() : at.value();
-    const double across = side == Side::u1 || side == Side::v1 ? 1 : 0;
-    const Vec3 n =
-        runs_along_u(side) ? unit_normal(*patch, t, across).direction : unit_normal(*patch, across, t).direction;
+    const ParameterPoint on_side = point_beside(side, t, is_far(side));
+    const Vec3 n = unit_normal(*patch, on_side.u, on_side.v).direction;
     const std::array<double, 3> normal{n.x, n.y, n.z};
     for (int c = 0; c < 3; ++c) out.normal.at(to(k), c) = static_cast<float>(normal[static_cast<std::size_t>(c)]);
   }
