@@ -142,8 +142,6 @@ TEST_F(PointErrors, LengthsBlocksAndOptions) {
   EXPECT_FALSE(refused(samples, views()).ok());
   EXPECT_EQ(refused({.geometry = {.min_sine = 1}}).code(), StatusCode::invalid_argument);
   EXPECT_EQ(refused({.geometry = {.umbilic_tolerance = std::nan("")}}).code(), StatusCode::invalid_argument);
-  set_ = set_of(wavy_field(2, 3));
-  EXPECT_EQ(refused().code(), StatusCode::unsupported);
 }
 
 TEST_F(PointErrors, NoSamplesAreNoError) {

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "support/allocations.h"
 #include "support/points.h"
@@ -52,6 +53,33 @@ TEST(Points, SameBytesForAnyThreadsAndOnEveryIsaOfMixedDegrees) {
   const std::vector<BezierPatch> patches = mixed_patches(random, 4, 2);
   compare_points<float>(patches, 9000);
   compare_points<double>(patches, 9000);
+}
+
+/// A set that was made without coefficients for points gives the same bytes, before and after edits.
+template <class T>
+void compare_on_demand(const std::vector<BezierPatch>& patches) {
+  Random random(331);
+  PatchSet with = set_of(patches, with_points()), without = set_of(patches);
+  const Samples<T> samples = random_samples<T>(random, with.patch_count(), 3000);
+  for (int edit = 0; edit < 3; ++edit) {
+    std::vector<AllBuffers<T>> found(4, AllBuffers<T>(0));
+    std::vector<std::thread> threads;  // of which all, or some, pack at once
+    for (AllBuffers<T>& to : found) threads.emplace_back([&] { to = all_outputs(without, samples, {}); });
+    for (std::thread& thread : threads) thread.join();
+    const AllBuffers<T> wanted = all_outputs(with, samples, {});
+    for (const AllBuffers<T>& of : found) EXPECT_EQ(of.values, wanted.values) << edit;
+    const std::span<const Vec3> old = with.patch(static_cast<std::size_t>(edit)).points();
+    std::vector<Vec3> points(old.begin(), old.end());
+    for (Vec3& p : points) p.z += 1;
+    for (PatchSet* set : {&with, &without})
+      ASSERT_TRUE(set->set_control_points(static_cast<std::size_t>(edit), points).ok());
+  }
+}
+TEST(Points, SetsWithoutCoefficientsPackThemOnDemand) {
+  Random random(332);
+  const std::vector<BezierPatch> patches = mixed_patches(random, 3);
+  compare_on_demand<float>(patches);
+  compare_on_demand<double>(patches);
 }
 
 /// A sample's values depend neither on its neighbours nor on the kernel that their order selects.

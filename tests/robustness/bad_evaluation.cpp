@@ -166,8 +166,12 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   rows.refused("a smallest sine of 1", invalid_argument, sound, rows.views(), {.geometry = {.min_sine = 1}});
   rows.refused("an unknown instruction set", isa_unavailable, sound, rows.views(), {.isa = Isa{9}});
   table.gives("no samples", "nothing written", evaluate(set, PatchSamples<float>{}, rows.views()).ok());
-  const PatchSet plain = set_of(wavy_field(1, 2));
-  table.row("a set without coefficients for points", unsupported, evaluate(plain, sound, rows.views()));
+  const std::vector<Vec3> corners{{0, 0, 0}, {0, 1e200, 0}, {1e200, 0, 0}, {1e200, 1e200, 0}};
+  PatchSetOptions in_double;
+  in_double.blocks = {.float_bernstein = false, .double_bernstein = true};
+  const PatchSet far =
+      value_of(PatchSet::make(std::vector{value_of(BezierPatch::polynomial(1, 1, corners))}, in_double));
+  table.row("a set in double, too far away for float", non_finite, evaluate(far, sound, rows.views()));
 }
 
 void samples_by_surface(Table& table, const PatchSet& set) {

@@ -66,6 +66,16 @@ TEST(Tessellate, OfAModelIsThePlansMeshWithItsParts) {
   EXPECT_EQ(parts[2].name, "back");
 }
 
+TEST(Tessellate, OfASurfaceIsThatOfAModelOfIt) {
+  const Surface surface = model().surfaces[0].surface;
+  Model alone;
+  alone.surfaces.push_back({{}, surface});
+  const TessellationOptions options{.tolerance = 1e-3};
+  EXPECT_EQ(value_of(tessera::tessellate(surface, options)).positions,
+            value_of(tessera::tessellate(alone, options)).positions);
+  EXPECT_EQ(tessera::tessellate(surface, {}).status().code(), StatusCode::invalid_argument);
+}
+
 TEST(Tessellate, PassesErrorsOn) {
   EXPECT_EQ(tessera::tessellate(model(), {}).status().code(), StatusCode::invalid_argument);
   EXPECT_FALSE(tessera::tessellate(Model{}, {.tolerance = 1e-3}).ok());

@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "tess_trim/closed_shape.h"
+#include "tessera/tessellate.h"
 #include "tessera/topology.h"
 
 namespace tessera::test { namespace {
@@ -35,6 +36,11 @@ TEST(ClosedShape, DrilledPlateIsClosedAtAnyTolerance) {
       EXPECT_NEAR(volume, drilled_volume(), area * (made.bound + made.gap)) << tolerance;
     }
   }
+}
+
+TEST(ClosedShape, OneCallMakesAClosedMesh) {
+  const Mesh mesh = value_of(tessera::tessellate(joined(drilled_plate(), 1e-6), {.tolerance = 1e-3}));
+  EXPECT_TRUE(value_of(check(mesh)).closed());
 }
 
 /// Distances of the mesh's points from the plate's faces, in closed form, for each triangle and its face.

@@ -30,7 +30,7 @@ struct BlockKinds {
   bool float_power = false;       ///< for grids in the power form
   bool double_power = false;      ///< for grids in double in the power form
   /// For scattered points (evaluate.h): Bernstein coefficients once more, patch by patch, each from a cache line on.
-  /// 192 bytes per bicubic patch in float.
+  /// 192 bytes per bicubic patch in float. Without them the set packs all patches at the first call after each edit.
   bool float_points = false;
   bool double_points = false;  ///< for scattered points in double
 };

@@ -8,6 +8,7 @@
 #include "tessera/model.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
+#include "tessera/surface.h"
 #include "tessera/tessellation.h"
 
 #pragma GCC visibility push(default)
@@ -22,6 +23,10 @@ Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options,
 /// Makes a model's mesh in one call, from make_patch_set(), with parts_by_surface(). Errors: as above, and those of
 /// these two.
 Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, const Execution& execution = {});
+/// Makes the mesh of one surface of any kind in one call. Errors: as above.
+Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& options, const Execution& execution = {});
+/// Makes the mesh of a shape in one call, closed along the edges that its faces share. Errors: as above.
+Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution = {});
 
 }}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

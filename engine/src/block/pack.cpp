@@ -136,6 +136,20 @@ bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, con
   return true;
 }
 
+template <class T>
+bool PatchSet::Impl::pack_points(std::size_t index, Coefficients<T>& to) const {
+  const BlockGroup& group = group_of_block(slots[index].block);
+  const Box3 hull = patches[index].hull_box();
+  const RelativeNet net(patches[index], origin);
+  const bool curve = is_curve(patches[index], collapsed[index]);
+  if (!fits(net, sizeof(T) == sizeof(float), net.largest(hull))) return false;
+  const Slot slot = slots[index];
+  Place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()}.write_points(to, net.tangent_size(hull));
+  return true;
+}
+template bool PatchSet::Impl::pack_points(std::size_t index, Coefficients<float>& to) const;
+template bool PatchSet::Impl::pack_points(std::size_t index, Coefficients<double>& to) const;
+
 bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, const Box3& hull) {
   if (!kinds.float_power && !kinds.double_power) return true;
   const RelativeNet net(patches[index], origin);

@@ -13,6 +13,7 @@
 #include "block/patch_set_impl.h"
 #include "block/patch_trims.h"
 #include "kernel/table/kernel_table.h"
+#include "parallel/least_index.h"
 #include "parallel/parallel_for.h"
 #include "surface/net/patch_pieces.h"
 #include "tessera/guard.h"
@@ -77,6 +78,17 @@ void add_group(PatchSet::Impl& set, std::span<const std::uint32_t> patches, Next
   set.groups.push_back(group);
 }
 
+/// Allocates coefficients and thresholds for scattered points.
+template <class T>
+void make_room_for_points(const PatchSet::Impl& set, Coefficients<T>& of) {
+  constexpr std::size_t lanes = PatchSet::lanes;
+  const BlockGroup& last = set.groups.back();
+  const std::size_t of_last = (last.block_count - 1) * lanes + set.lane_counts.back();
+  of.points.resize(last.first_point_value + of_last * last.point_values + lanes);
+  std::fill_n(of.points.end() - lanes, lanes, T(0));
+  of.point_threshold.resize(lanes * set.lane_counts.size());
+}
+
 /// Allocates coefficients and thresholds of the kinds that the set holds.
 void make_room(PatchSet::Impl& set, const NextValues& values) {
   constexpr std::size_t lanes = PatchSet::lanes;
@@ -88,13 +100,8 @@ void make_room(PatchSet::Impl& set, const NextValues& values) {
   if (set.kinds.float_power) make_blocks(set.f32.power, set.f32.power_threshold);
   if (set.kinds.double_bernstein) make_blocks(set.f64.bernstein, set.f64.bernstein_threshold);
   if (set.kinds.double_power) make_blocks(set.f64.power, set.f64.power_threshold);
-  const auto make_points = [&](auto& of) {
-    of.points.resize(values.point + lanes);
-    std::fill_n(of.points.end() - lanes, lanes, 0);
-    of.point_threshold.resize(lanes * set.lane_counts.size());
-  };
-  if (set.kinds.float_points) make_points(set.f32);
-  if (set.kinds.double_points) make_points(set.f64);
+  if (set.kinds.float_points) make_room_for_points(set, set.f32);
+  if (set.kinds.double_points) make_room_for_points(set, set.f64);
 }
 
 /// Assigns patches to groups, blocks and lanes, in the patches' order within a group.
@@ -188,6 +195,41 @@ Status PatchSet::Impl::pack_all() {
   return status.ok() && failed < lane_patches.size() ? too_large(lane_patches[failed]) : status;
 }
 
+template <class T>
+Result<std::shared_ptr<const Coefficients<T>>> PatchSet::Impl::points(const std::atomic<bool>* cancel) const {
+  using Shared = std::shared_ptr<const Coefficients<T>>;
+  constexpr bool is_f64 = sizeof(T) == sizeof(double);
+  if (is_f64 ? kinds.double_points : kinds.float_points) return Shared(std::shared_ptr<void>(), &coefficients<T>());
+  auto& slot = [this]() -> auto& {
+    if constexpr (is_f64)
+      return f64_points;
+    else
+      return f32_points;
+  }
+  ();
+  std::shared_ptr<const PointsOnDemand<T>> kept = slot.load();
+  if (!kept || kept->revision != revision) {
+    const auto made = std::make_shared<PointsOnDemand<T>>();
+    made->revision = revision;
+    make_room_for_points(*this, made->coefficients);
+    LeastIndex failed;
+    constexpr std::size_t patches_in_piece = 256;
+    const auto pack_some = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        if (!pack_points(k, made->coefficients)) failed.add(k);
+    };
+    Status status = parallel_for(patches.size(), patches_in_piece, {.cancel = cancel}, pack_some);
+    if (!status.ok()) return status;
+    if (failed.found()) return too_large(failed.index());
+    find_largest_threshold(made->coefficients);
+    kept = made;
+    slot.store(kept);
+  }
+  return Shared(kept, &kept->coefficients);
+}
+template Result<std::shared_ptr<const Coefficients<float>>> PatchSet::Impl::points(const std::atomic<bool>*) const;
+template Result<std::shared_ptr<const Coefficients<double>>> PatchSet::Impl::points(const std::atomic<bool>*) const;
+
 Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vector<PatchSource> sources,
                                       std::size_t surface_count, const std::optional<Box3>& box,
                                       const PatchSetOptions& options) {
@@ -267,6 +309,8 @@ std::size_t PatchSet::memory_bytes() const {
                       bytes(impl_->collapsed) + bytes(impl_->groups) + bytes(impl_->edited) +
                       bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->f32) +
                       all_bytes(impl_->f64);
+  if (const auto f32 = impl_->f32_points.load()) total += all_bytes(f32->coefficients);
+  if (const auto f64 = impl_->f64_points.load()) total += all_bytes(f64->coefficients);
   for (const BezierPatch& patch : impl_->patches) total += patch.points().size_bytes() + patch.weights().size_bytes();
   return total;
 }

@@ -2,6 +2,7 @@
 // Holds the inner state of a PatchSet: patches and groups of blocks, for the floors that evaluate them.
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -59,6 +60,13 @@ struct Coefficients {
   }
 };
 
+/// Coefficients for scattered points of a set that was made without them, as of a revision.
+template <class T>
+struct PointsOnDemand {
+  std::uint64_t revision = 0;
+  Coefficients<T> coefficients;
+};
+
 class MeshTables;
 struct PatchEdges;
 struct PatchTrims;
@@ -88,6 +96,8 @@ class PatchSet::Impl {
   std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit
   /// The tables that plans of this set share (tess/write/mesh_tables.h), without and with those of bicubic points.
   mutable std::array<SharedSlot<MeshTables>, 2> mesh_tables;
+  mutable SharedSlot<PointsOnDemand<float>> f32_points;
+  mutable SharedSlot<PointsOnDemand<double>> f64_points;
 
   /// Begins a new revision, in which these patches have been edited.
   void note_edits(std::span<const std::uint32_t> of) {
@@ -112,9 +122,10 @@ class PatchSet::Impl {
     return bernstein ? kinds.double_bernstein : kinds.double_power;
   }
 
-  bool has_points(Precision precision) const {
-    return precision == Precision::single_precision ? kinds.float_points : kinds.double_points;
-  }
+  /// Returns the coefficients for scattered points. A set that was made without them packs them now, and keeps them
+  /// until it is edited. Errors: non_finite (index = the patch), cancelled.
+  template <class T>
+  Result<std::shared_ptr<const Coefficients<T>>> points(const std::atomic<bool>* cancel) const;
 
   /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. Returns
   /// false, with the lanes half-written, if a coefficient does not fit. Allocates nothing.
@@ -147,6 +158,9 @@ class PatchSet::Impl {
   /// false if a coefficient does not fit.
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
   bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull);
+  /// Packs coefficients for scattered points into memory that has room for them.
+  template <class T>
+  bool pack_points(std::size_t index, Coefficients<T>& to) const;
   bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
   /// Packs all patches. Errors: non_finite (the first patch in the order of the lanes that doesn't fit).
   Status pack_all();

@@ -25,13 +25,7 @@ constexpr std::size_t serial_positions = 4096, serial_normals = 2048;
 
 /// Checks options and views. Sets `order` to the highest order of the derivatives that the outputs need.
 template <class T, class Source>
-Status check_call(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out,
-                  const PointOptions& options, int& order) {
-  const bool is_f64 = sizeof(T) == 8;
-  if (!set.has_points(is_f64 ? Precision::double_precision : Precision::single_precision))
-    return Status(StatusCode::unsupported,
-                  std::string("the patch set has no coefficients for scattered points; make it with BlockKinds::") +
-                      (is_f64 ? "double_points" : "float_points"));
+Status check_call(const Source& source, const QuantityViews<T>& out, const PointOptions& options, int& order) {
   if (!source.lengths_fit())
     return Status(StatusCode::count_mismatch,
                   "every list of these samples must hold at least " + counted(source.count(), "record"));
@@ -77,7 +71,7 @@ template <class T, class Source>
 Status run(const PatchSet::Impl& set, const Source& source, const QuantityViews<T>& out, const PointOptions& options,
            const Execution& execution) {
   int order = 0;
-  if (Status status = check_call(set, source, out, options, order); !status.ok()) return status;
+  if (Status status = check_call(source, out, options, order); !status.ok()) return status;
   const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
   const std::size_t capacity = ChunkSamples<T>::capacity;
@@ -86,7 +80,9 @@ Status run(const PatchSet::Impl& set, const Source& source, const QuantityViews<
   const kernel::KernelTable& kernels = kernel::kernels(*isa);
   if (Status status = check_samples(source, kernels, 8 * grain, execution); !status.ok()) return status;
 
-  const PointCall<T> call{set, kernels, out, options.geometry};
+  const auto coefficients = set.points<T>(execution.cancel);
+  if (!coefficients) return coefficients.status();
+  const PointCall<T> call{set, **coefficients, kernels, out, options.geometry};
   std::atomic<Isa> ran{*isa};
   Status status = parallel_for(source.count(), grain, execution, [&](std::size_t begin, std::size_t end) {
     PointChunk<T> chunk(call);

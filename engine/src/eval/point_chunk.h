@@ -19,6 +19,7 @@ namespace tessera { inline namespace abi_0_1 {
 template <class T>
 struct PointCall {
   const PatchSet::Impl& set;
+  const Coefficients<T>& coefficients;
   const kernel::KernelTable& kernels;
   const QuantityViews<T>& out;
   LocalGeometryOptions geometry;
@@ -62,7 +63,7 @@ class PointChunk {
  public:
   using Samples = ChunkSamples<T>;
 
-  explicit PointChunk(const PointCall<T>& call) : call_(call), coefficients_(call.set.template coefficients<T>()) {
+  explicit PointChunk(const PointCall<T>& call) : call_(call), coefficients_(call.coefficients) {
     prepare_job();
     T* next = stage_.data();
     for_each_value_quantity([&](const auto& quantity) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -38,6 +39,19 @@ Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, 
   if (!parts) return parts.status();
   mesh->parts = *std::move(parts);
   return mesh;
+}
+
+Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& options, const Execution& execution) {
+  return guarded([&] {
+    Model model;
+    model.surfaces.push_back({{}, surface});
+    return tessellate(model, options, execution);
+  });
+}
+
+Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution) {
+  const Result<PatchSet> set = make_patch_set(shape);
+  return set ? tessellate(*set, options, execution) : set.status();
 }
 
 }}  // namespace tessera::abi_0_1
