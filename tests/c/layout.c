@@ -139,7 +139,7 @@ static const struct {
     PLACE(tsr_plan_info, gap, 48),
     PLACE(tsr_plan_info, angle, 56),
     PLACE(tsr_plan_info, pixels, 64),
-    PLACE(tsr_plan_info, is_proven, 72),
+    PLACE(tsr_plan_info, is_certified, 72),
     PLACE(tsr_plan_info, has_normals, 76),
     PLACE(tsr_plan_info, open_edges, 80),
     PLACE(tsr_plan_info, crossed_patches, 88),

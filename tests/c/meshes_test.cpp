@@ -55,7 +55,7 @@ TEST(CMesh, OptionsOfEveryKind) {
   const Handle<tsr_plan> plan(made);
   tsr_plan_info info = sized<tsr_plan_info>();
   ASSERT_C(tsr_plan_describe(plan.get(), &info));
-  EXPECT_TRUE(info.is_proven);
+  EXPECT_TRUE(info.is_certified);
   EXPECT_GT(info.angle, 0);
   EXPECT_LE(info.angle, 0.1);
   EXPECT_GT(info.pixels, 0);
@@ -66,7 +66,7 @@ TEST(CMesh, OptionsOfEveryKind) {
   const Handle<tsr_plan> uniform(made);
   ASSERT_C(tsr_plan_describe(uniform.get(), &info));
   EXPECT_EQ(info.triangles, 9u * 3 * 5 * 2);
-  EXPECT_FALSE(info.is_proven);
+  EXPECT_FALSE(info.is_certified);
   EXPECT_EQ(info.bound, std::numeric_limits<double>::infinity());
 }
 

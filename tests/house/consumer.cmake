@@ -153,7 +153,7 @@ function(check_python prefix)
     return()
   endif()
   string(CONCAT code "import sys, tessera as ts\n"
-    "print(ts.__file__, ts.read(sys.argv[1]).patches().tessellate(1e-3).is_proven, len(ts.read(sys.argv[2])) > 0)\n")
+    "print(ts.__file__, ts.read(sys.argv[1]).patches().tessellate(1e-3).is_certified, len(ts.read(sys.argv[2])) > 0)\n")
   set(models ${SOURCE}/tools/models)
   set(second ${models}/goblet.json)
   if(EXISTS ${BUILD}/tools/tessera-cad-reader)

@@ -61,7 +61,7 @@ readme_install() {
 }
 
 readme_commands=$(grep '^tessera ' "$sources/README.md")
-python='import tessera; print(tessera.read("tools/models/goblet.json").patches().tessellate(1e-3).is_proven)'
+python='import tessera; print(tessera.read("tools/models/goblet.json").patches().tessellate(1e-3).is_certified)'
 
 new_root
 apt "apt-get update"

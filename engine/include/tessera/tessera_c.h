@@ -271,7 +271,7 @@ typedef struct tsr_plan_info {
   double bound;                        /* the distance that is proven, infinite with rates */
   double gap;                          /* how far faces fail to meet at edges: points lie within bound + gap */
   double angle, pixels;                /* proven, 0 if not wanted */
-  int32_t is_proven, has_normals;
+  int32_t is_certified, has_normals;
   uint64_t open_edges;      /* edges of one triangle */
   uint64_t crossed_patches; /* left out, since their loops are no polygon */
 } tsr_plan_info;

@@ -30,7 +30,7 @@ _STRUCTS = {
     "int32 rate_v, uint32 flags, uint32 reserved, double weld, double crease_angle, double max_gap, double spare, "
     "uint64 max_triangles",
     "tsr_plan_info": "uint64 vertices, uint64 triangles, uint64 quads, double tolerance, double bound, double gap, "
-    "double angle, double pixels, int32 is_proven, int32 has_normals, uint64 open_edges, uint64 crossed_patches",
+    "double angle, double pixels, int32 is_certified, int32 has_normals, uint64 open_edges, uint64 crossed_patches",
     "tsr_mesh": "tsr_out position, tsr_out normal, tsr_out parameter, tsr_out position_f64, pointer triangles, "
     "pointer triangle_patches, pointer quads, pointer quad_patches, size triangle_count, size quad_count",
     "tsr_mesh_report": "uint64 vertices, uint64 distinct_positions, uint64 triangles, uint64 quads, uint64 open_edges, "

@@ -147,7 +147,7 @@ class Mesh:
     gap: float
     angle: float
     pixels: float
-    is_proven: bool
+    is_certified: bool
     open_edges: int
 
     def __init__(self) -> None:
@@ -189,7 +189,7 @@ class Mesh:
         self.origin = np.zeros(3) if is_double else np.array(self._set._info().origin)
         self.bound, self.gap, self.angle, self.pixels = info.bound, info.gap, info.angle, info.pixels
         self._tolerance = info.tolerance
-        self.is_proven, self.open_edges = bool(info.is_proven), info.open_edges
+        self.is_certified, self.open_edges = bool(info.is_certified), info.open_edges
         return info
 
     def _records(self, name: str, count: int, components: int, dtype: Any) -> np.ndarray:
@@ -297,10 +297,10 @@ class Mesh:
     def __repr__(self) -> str:
         quads = f", {len(self.quads):,} quads" if len(self.quads) else ""
         distance = self.bound + self.gap
-        parts = [f"proven within {distance:.3g}"] if self.is_proven and np.isfinite(distance) else []
+        parts = [f"proven within {distance:.3g}"] if self.is_certified and np.isfinite(distance) else []
         parts += [f"normals within {self.angle:.3g} rad"] * (self.angle > 0)
         parts += [f"within {self.pixels:.3g} pixels"] * (self.pixels > 0)
-        proven = ", ".join(parts) if self.is_proven else "unproven"
+        proven = ", ".join(parts) if self.is_certified else "unproven"
         triangles = f"{len(self.faces):,} triangle{'s' * (len(self.faces) != 1)}"
         return f"<Mesh {len(self.vertices):,} vertices, {triangles}{quads}, {proven}>"
 

@@ -276,7 +276,7 @@ class Assembly:
     """A mesh per shape and the places of the shapes; of a model without shapes one mesh, and no places.
 
     >>> import tessera as ts
-    >>> ts.read(goblet).tessellate(tolerance=1e-2).meshes[0].is_proven
+    >>> ts.read(goblet).tessellate(tolerance=1e-2).meshes[0].is_certified
     True
     """
 

@@ -187,7 +187,7 @@ class PatchSetBase(Handle):
 
         >>> import tessera as ts
         >>> mesh = ts.read(goblet).patches().tessellate(tolerance=1e-2)
-        >>> mesh.is_proven and mesh.bound <= 1e-2, mesh.faces.dtype, mesh.vertices.shape[1]
+        >>> mesh.is_certified and mesh.bound <= 1e-2, mesh.faces.dtype, mesh.vertices.shape[1]
         (True, dtype('uint32'), 3)
         """
         wanted = dict(locals())

@@ -93,7 +93,7 @@ def test_threads_and_other_counts(patches):
     refused("repeats", lambda count: ts.measure(lambda: None, count), -1, 0, 2**40)
     refused("derivatives", lambda order: patches.grid([0], [0], derivatives=order), *WRAPPED, 3)
     with ts.threads(1024):
-        assert patches.tessellate(1e-1).is_proven
+        assert patches.tessellate(1e-1).is_certified
 
 
 def test_flags_are_true_or_false():

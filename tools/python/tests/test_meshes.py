@@ -13,7 +13,7 @@ from conftest import wavy
 
 def test_a_mesh_keeps_its_tolerance(goblet):
     mesh = goblet.patches().tessellate(tolerance=1e-2)
-    assert mesh.is_proven and 0 < mesh.bound <= 1e-2
+    assert mesh.is_certified and 0 < mesh.bound <= 1e-2
     assert mesh.vertices.dtype == mesh.normals.dtype == np.float32 and mesh.faces.dtype == np.uint32
     assert mesh.faces.max() < len(mesh.vertices) and mesh.patches.max() < len(goblet.patches())
     assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-5)
@@ -35,7 +35,7 @@ def test_options():
     fine, coarse = patches.tessellate(1e-3), patches.tessellate(1e-1)
     assert len(fine.faces) > len(coarse.faces)
     assert len(patches.tessellate(rates=4).faces) == 9 * 32
-    assert not patches.tessellate(rates=(3, 5)).is_proven
+    assert not patches.tessellate(rates=(3, 5)).is_certified
     quads = patches.tessellate(1e-2, quads=True)
     assert len(quads.quads) > 0 and quads.quads.shape[1] == 4 and len(quads.quad_patches) == len(quads.quads)
     assert len(quads.triangles()) == len(quads.faces) + 2 * len(quads.quads)
@@ -47,7 +47,7 @@ def test_options():
     turned = patches.tessellate(angle=0.2)
     assert 0 < turned.angle <= 0.2 and "rad" in repr(turned)
     budget = patches.tessellate(max_triangles=500)
-    assert 100 < len(budget.faces) <= 500 and budget.is_proven
+    assert 100 < len(budget.faces) <= 500 and budget.is_certified
     view = ts.View(eye=(1, 1, 10), target=(1, 1, 0), up=(0, 1, 0))
     assert 0 < patches.tessellate(pixels=0.5, view=view).pixels <= 0.5
 
@@ -109,7 +109,7 @@ def test_edits_and_updates():
     points[1:3, 1:3, 2] += 3
     patches[4].points = points
     assert mesh.update() is True
-    assert (mesh.vertices == patches.tessellate(1e-2).vertices).all() or mesh.is_proven
+    assert (mesh.vertices == patches.tessellate(1e-2).vertices).all() or mesh.is_certified
     with pytest.raises(ts.StateError):
         scene.closest([1.5, 1.5, 9], [0, 0, -1])
     scene.refit()

@@ -182,7 +182,7 @@ NeededSegments PatchNeeds::segments_for(std::size_t patch, const PlanRequest& re
   needed.segments = proven.segments;
   needed.anywhere = proven.anywhere;
   needed.bound = given + proven.distance;
-  if (turning) needed.angle = bounded && turning->is_proven ? turning->bound.angle(proven.segments) : infinity;
+  if (turning) needed.angle = bounded && turning->is_certified ? turning->bound.angle(proven.segments) : infinity;
   if (picture) needed.pixels = picture->pixels(proven.segments, needed.bound);
   return needed;
 }

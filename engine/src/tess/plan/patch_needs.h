@@ -83,7 +83,7 @@ class PatchNeeds {
     TurningBound bound;
     /// False where the surface's own normal has no bound beside a border that welding makes a point: the bound is then
     /// that of the patch with a pole there, and divides the patch, but proves nothing.
-    bool is_proven = true;
+    bool is_certified = true;
   };
   NormalTurning turning_of(std::size_t patch) const;
 
