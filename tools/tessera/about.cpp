@@ -1,5 +1,5 @@
-#include "commands.h"
-#include "loading.h"
+#include "commands/commands.h"
+#include "stages/load.h"
 #include "tessera/cad.h"
 #include "tessera/version.h"
 

@@ -2,12 +2,12 @@
 
 #include <exception>
 
-#include "batch.h"
-#include "commands.h"
-#include "console.h"
-#include "help.h"
-#include "output.h"
-#include "suggestions.h"
+#include "batch/batch.h"
+#include "commands/commands.h"
+#include "console/console.h"
+#include "console/output.h"
+#include "line/help.h"
+#include "line/suggestions.h"
 #include "tessera/execution.h"
 
 namespace tessera::cli { namespace {

@@ -6,16 +6,16 @@
 #include <memory>
 #include <system_error>
 
-#include "commands.h"
-#include "loading.h"
-#include "meshing.h"
-#include "output.h"
+#include "commands/commands.h"
+#include "console/output.h"
+#include "facts/topology.h"
+#include "stages/load.h"
+#include "stages/mesh.h"
 #include "tessera/io.h"
 #include "tessera/part_mesh.h"
 #include "tessera/surface_file.h"
 #include "tessera/topology.h"
 #include "tessera_mpi/mpi_team.h"
-#include "topology_facts.h"
 
 namespace tessera::cli {
 namespace {

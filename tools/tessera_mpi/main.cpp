@@ -8,10 +8,10 @@
 #include <string>
 #include <thread>
 
-#include "commands.h"
-#include "console.h"
-#include "help.h"
-#include "output.h"
+#include "commands/commands.h"
+#include "console/console.h"
+#include "console/output.h"
+#include "line/help.h"
 #include "tessera/execution.h"
 #include "tessera/files.h"
 #include "tessera/guard.h"

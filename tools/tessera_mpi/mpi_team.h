@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "commands.h"
-#include "team.h"
+#include "batch/team.h"
+#include "commands/commands.h"
 #include "tessera/mpi.h"
 #include "tessera/status.h"
 

@@ -1,0 +1,37 @@
+#pragma once
+// The commands of the tool. Each adds its options to the command line, and itself to the session if it is chosen.
+
+#include <functional>
+#include <string>
+
+#include "line/command_line.h"
+#include "line/common_options.h"
+#include "tessera/status.h"
+
+namespace tessera::cli {
+
+class Team;
+
+/// The command that the user has chosen.
+struct Session {
+  std::function<Status()> command;
+  CommonOptions common;
+  Team* team = nullptr;  ///< null: this process alone
+};
+
+/// The text of `tessera --version`: the version, the formats that are read and written, and the CAD reader's place.
+std::string version_text();
+/// Sets name, purpose and closing words of `tessera --help`.
+void describe(Command& tool);
+
+void add_info(Command& tool, Session& session);
+void add_eval(Command& tool, Session& session);
+void add_tessellate(Command& tool, Session& session);
+void add_raycast(Command& tool, Session& session);
+void add_convert(Command& tool, Session& session);
+void add_check(Command& tool, Session& session);
+void add_completion(Command& tool, Session& session);
+void add_man(Command& tool, Session& session);
+void add_help(Command& tool, Session& session);
+
+}  // namespace tessera::cli

@@ -1,0 +1,226 @@
+// tessera raycast: pictures of surfaces, or the hits of rays from a file.
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "commands/commands.h"
+#include "commands/raycast_footer.h"
+#include "console/output.h"
+#include "console/terminal.h"
+#include "line/arguments.h"
+#include "picture/raycast.h"
+#include "render/camera.h"
+#include "table/csv.h"
+#include "tessera/io.h"
+
+namespace tessera::cli {
+namespace {
+
+Status cast_job(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
+  Result<OutputFile> out = open_output(job.output, options.team);
+  if (!out) return out.status();
+  std::vector<Ray> rays;
+  if (!options.rays.empty()) {
+    Result<std::vector<Ray>> read = read_rays(options.rays);
+    if (!read) return read.status();
+    rays = *std::move(read);
+  }
+  const Result<RaycastScene> scene = make_scene(job, options, timings);
+  if (!scene) return scene.status();
+  const Status status = !options.rays.empty()      ? write_ray_hits(job, options, common, *scene, rays, *out, timings)
+                        : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
+                                                   : draw_characters(options, *scene, *out, timings);
+  return status.ok() ? scene->loaded.status() : status;
+}
+
+Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
+  const Status own = cast_job(job, options, common, timings);
+  return options.team ? options.team->end_job(own) : own;
+}
+
+render::Camera parse_camera(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--camera", text, 7, "ex,ey,ez,tx,ty,tz,fovdeg");
+  render::Camera camera;
+  camera.eye = {n[0], n[1], n[2]};
+  camera.target = {n[3], n[4], n[5]};
+  camera.fov_degrees = n[6];
+  const Status status = render::check(camera);
+  if (!status.ok()) throw UsageError("--camera", status.message());
+  return camera;
+}
+
+constexpr const char* picture_extension = ".png";
+
+std::string fault_of_picture(const std::string& path) {
+  if (is_folder(path) || is_stream(path)) return {};
+  const std::string extension = lower_extension(path);
+  if (extension == picture_extension || is_exr(path)) return {};
+  return path + ": unsupported format \"" + extension + "\": pictures are written as .png, .exr";
+}
+
+const std::map<std::string, render::Shade> shades{
+    {"lambert", render::Shade::lambert}, {"normals", render::Shade::normals}, {"uv", render::Shade::uv},
+    {"patch", render::Shade::patch},     {"error", render::Shade::error},     {"curvature", render::Shade::curvature},
+    {"clay", render::Shade::clay},       {"steps", render::Shade::steps}};
+
+/// Adds the options that make sense only with a picture, and returns them.
+std::vector<const Option*> add_picture_options(Command& command, RaycastOptions& options) {
+  const auto set_size = [&options](const std::string& text) {
+    const Extent size = parse_extent("--size", text, 1, 16384);
+    options.settings.width = size.first;
+    options.settings.height = size.second;
+    options.sized = true;
+  };
+  const auto set_shade = [&options](const std::string& text) {
+    options.settings.shade = shades.at(text);
+    options.shaded = true;
+    if (options.settings.shade == render::Shade::error) options.settings.samples = 2;  // distances are slow
+  };
+  const auto set_up = [&options](const std::string& text) {
+    options.settings.up = text == "x" ? render::Up::x : text == "y" ? render::Up::y : render::Up::z;
+  };
+  const auto set_quality = [&options](const std::string& text) {
+    if (text != "draft") return;
+    options.settings.samples = 2;
+    options.settings.simple_light = true;
+  };
+  const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
+  command.begin_group("Pictures");
+  Option& picture =
+      command
+          .add_text("-o,--output", "FILE",
+                    "The picture file (.png, .exr), a folder, a name with {name}, or - for standard output [the "
+                    "terminal]",
+                    options.picture)
+          .check(fault_of_name)
+          .check(fault_of_picture);
+  return {&picture,
+          &command.add("--size", "WxH", "Pixels of the picture, 1 to 16384 each [1280x800; the terminal's]", set_size),
+          &command.add("--camera", "EX,EY,EZ,TX,TY,TZ,FOV",
+                       "Eye, target, field of view in degrees over the picture's shorter side [a view from above that "
+                       "fits the model]",
+                       set_camera),
+          &command.add_choice("--up", {"x", "y", "z"}, "The axis that points up [z]", set_up),
+          &command.add_choice("--shade", {"lambert", "normals", "uv", "patch", "error", "curvature", "clay", "steps"},
+                              "How surfaces are coloured [lambert]", set_shade),
+          &command.add_flag("--edges", "Draw lines where surfaces end or meet; on meshes, the edges of triangles",
+                            options.edges),
+          &command.add_choice("--quality", {"draft", "final"},
+                              "A draft has fewer rays per pixel and simple light; it takes a fifth of the time [final]",
+                              set_quality),
+          &command.add_flag("--terminal", "Draw on standard output, even if it is no terminal", options.terminal)
+               .exclude(picture),
+          &command
+               .add_choice("--colour,--color", {"auto", "always", "never"},
+                           "Colours in the terminal; \"always\" also in a pipe [auto]",
+                           [&options](const std::string& text) { options.colour = text; })
+               .exclude(picture)};
+}
+
+/// Adds --rays and --hits, which belong together and exclude pictures.
+void add_ray_options(Command& command, RaycastOptions& options, const std::vector<const Option*>& of_pictures) {
+  command.begin_group("Hits of your own rays");
+  Option& rays = command.add_text("--rays", "FILE.csv", "The table of rays to read", options.rays).check(fault_of_name);
+  rays.need(
+      command
+          .add_text("--hits", "FILE.csv", "The table of hits to write, a folder, or a name with {name}", options.hits)
+          .check(fault_of_name)
+          .need(rays));
+  if (!options.team)
+    command.add_flag("--all-hits", "Find all hits of each ray, not only the closest, in exact mode", options.all_hits)
+        .need(rays);
+  for (const Option* const picture : of_pictures) rays.exclude(*picture);
+}
+
+Plan plan_raycast(const RaycastOptions& options, const CommonOptions& common) {
+  if (!options.rays.empty()) {
+    Plan plan = plan_jobs(options.models.files, options.hits, {"--hits", ".csv"});
+    check_overwriting("--hits", plan.outputs(), {options.rays});
+    return plan;
+  }
+  const bool in_terminal = options.picture.empty();
+  const bool draws_there = options.terminal || (!options.team && output_is_terminal());
+  if (in_terminal && (common.json || !draws_there)) {
+    throw UsageError("raycast",
+                     "expected -o FILE, or --rays FILE.csv and --hits FILE.csv" +
+                         std::string(common.json ? "" : ", or --terminal, as standard output is no terminal"));
+  }
+  return plan_jobs(options.models.files, options.picture, {"--output", picture_extension, false});
+}
+
+void add_mode(Command& command, RaycastOptions& options) {
+  command.begin_group("Method");
+  command.add_choice(
+      "--mode", {"grid", "exact"}, "Rays meet the surfaces (exact), or facets first (grid) [exact]",
+      [&options](const std::string& text) { options.mode = text == "exact" ? RayMode::exact : RayMode::grid; });
+  command.add_count(
+      "--rate", "N",
+      "Segments of a patch's grid in each direction in --mode grid, 1 to 256 [64, fewer for many patches]", 1, 256,
+      [&options](std::size_t rate) { options.rate = static_cast<int>(rate); });
+}
+
+void add_team_options(Command& command, RaycastOptions& options) {
+  command.begin_group("Ranks");
+  command.add_flag("--data-parallel",
+                   "Each rank has a scene of its run of the patches, and all trace all rays: for --rays and .exr "
+                   "pictures in exact mode",
+                   options.data_parallel);
+}
+
+/// Rules for ranks that work together.
+void check_team(const RaycastOptions& options) {
+  check_input_of_team(options.models);
+  if (!options.data_parallel) return;
+  if (options.rays.empty() && !is_exr(format_path(options.picture, options.format)))
+    throw UsageError("--data-parallel", "needs --rays FILE.csv, or a picture as .exr");
+  if (options.mode == RayMode::grid) throw UsageError("--data-parallel", "needs --mode exact, found --mode grid");
+}
+
+/// Rules that depend on the values of options.
+void check_options(Command& command, const RaycastOptions& options) {
+  check_stream_format(options.picture, options.format);
+  if (command.option("--shade").count > 0 && is_exr(format_path(options.picture, options.format)))
+    throw UsageError("--shade", "an .exr picture holds numbers and takes no --shade");
+  check_error_options(command, options.settings.shade);
+  if (options.all_hits && options.mode == RayMode::grid)
+    throw UsageError("--all-hits", "needs --mode exact, found --mode grid");
+  if (options.settings.shade == render::Shade::steps && options.mode == RayMode::grid)
+    throw UsageError("--shade", "steps needs --mode exact, found --mode grid");
+  if (options.rate > 0 && options.mode != RayMode::grid)
+    throw UsageError("--rate", "needs --mode grid, found --mode exact");
+}
+
+}  // namespace
+
+void add_raycast(Command& tool, Session& session) {
+  Command& command = tool.add_command("raycast", "Draw pictures with rays, or find the hits of your own rays");
+  const auto options = std::make_shared<RaycastOptions>();
+  options->team = session.team;
+  add_models(command, options->models);
+  const std::vector<const Option*> of_pictures = add_picture_options(command, *options);
+  add_stream_format(command, {"png", "exr"}, options->format);
+  add_error_options(command, options->error, command.option("--shade"));
+  add_ray_options(command, *options, of_pictures);
+  add_mode(command, *options);
+  if (session.team) add_team_options(command, *options);
+  add_reading(command, options->models);
+  add_untrimmed(command, options->models);
+  add_common(command, session.common);
+  command.footer = raycast_footer;
+  command.choose = [options, &command, &session] {
+    check_input(options->models);
+    check_options(command, *options);
+    if (options->team) check_team(*options);
+    if (auto& camera = options->settings.camera) camera->up = render::from_z_up({0, 0, 1}, options->settings.up);
+    const Plan plan = plan_raycast(*options, session.common);
+    session.command = [options, plan, &session] {
+      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
+        return run_raycast(job, *options, session.common, timings);
+      });
+    };
+  };
+}
+
+}  // namespace tessera::cli

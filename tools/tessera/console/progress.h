@@ -1,0 +1,37 @@
+#pragma once
+// A progress bar for long work on standard error, if that is a terminal; a pipe gets nothing.
+
+#include <string>
+#include <string_view>
+
+#include "console/console.h"
+
+namespace tessera::cli {
+
+/// Sets the file that the next bars belong to, such as "(2/5) teapot.bpt"; empty for none.
+void set_progress_subject(std::string subject);
+
+/// Appears once the work has taken a tenth of a second, and is removed at the end.
+class Progress {
+ public:
+  explicit Progress(std::string_view work);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// Options for a library call: it reports its progress here, and an interrupt cancels it.
+  Execution execution();
+  /// Shows `share` of the work done, 0 to 1.
+  void tell(double share);
+
+ private:
+  std::string work_;
+  bool terminal_;
+  Stopwatch clock_;
+  double shown_at_ = -1;  // seconds; below 0: not shown yet
+};
+
+/// The text of the bar without control characters: "work [#####-----]  50% 3 s left", at most `columns` long.
+std::string progress_line(const std::string& work, double share, double seconds, int columns);
+
+}  // namespace tessera::cli

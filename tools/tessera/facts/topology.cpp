@@ -1,0 +1,184 @@
+#include "facts/topology.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "console/console.h"
+#include "tessera/edge_matching.h"
+#include "tessera/topology.h"
+
+namespace tessera::cli {
+namespace {
+
+/// Adds the counts of one shape for each of its `instances`.
+Status add_shape(const Shape& shape, std::size_t instances, TopologyFacts& facts) {
+  const Result<EdgeUses> uses = edge_uses(shape);
+  if (!uses) return uses.status();
+  const Result<std::vector<bool>> closed = closed_shells(shape);
+  if (!closed) return closed.status();
+  facts.solids += instances * shape.solid_count;
+  facts.vertices += instances * shape.vertices.size();
+  for (const bool is_closed : *closed) (is_closed ? facts.closed_shells : facts.open_shells) += instances;
+  for (std::size_t k = 0; k < shape.edges.size(); ++k) {
+    if (shape.edges[k].degenerate) {
+      facts.points += instances;
+      continue;
+    }
+    facts.edges += instances;
+    const std::size_t count = (*uses)[k].size();
+    if (count > 0) (count == 1 ? facts.one : count == 2 ? facts.two : facts.more) += instances;
+  }
+  return {};
+}
+
+Status add_gaps(const Model& model, std::size_t k, TopologyFacts& facts) {
+  const Result<std::vector<double>> gaps = edge_gaps(model.shapes[k], gap_samples);
+  if (!gaps) return gaps.status();
+  for (std::size_t edge = 0; edge < gaps->size(); ++edge) {
+    if (!((*gaps)[edge] > facts.gap)) continue;
+    facts.gap = (*gaps)[edge];
+    facts.gap_shape = k;
+    facts.gap_edge = edge;
+  }
+  return {};
+}
+
+/// Whether some edge has one face, or a face names no edges.
+Result<bool> has_free_edges(const Shape& shape) {
+  const Result<EdgeUses> uses = edge_uses(shape);
+  if (!uses) return uses.status();
+  for (std::size_t k = 0; k < shape.edges.size(); ++k)
+    if ((*uses)[k].size() == 1 && !shape.edges[k].degenerate) return true;
+  for (const ShapeFace& face : shape.faces) {
+    const std::vector<TrimLoop>& loops = edge_loops(face);
+    const auto is_nameless = [](const TrimLoop& loop) { return loop.coedges.empty(); };
+    if (loops.empty() || std::any_of(loops.begin(), loops.end(), is_nameless)) return true;
+  }
+  return false;
+}
+
+/// The shapes of a model; its surfaces as one if it has none.
+std::vector<Shape> shapes_of(const Model& model) {
+  if (!model.shapes.empty()) return model.shapes;
+  std::vector<Shape> one(1);
+  for (const ModelSurface& surface : model.surfaces) one[0].faces.push_back({surface});
+  return one;
+}
+
+std::string name_of(const Model& model, std::size_t shape) {
+  const std::string& name = *model.shapes[shape].name;
+  return "shape " + std::to_string(shape) + (name.empty() ? "" : " (" + name + ")");
+}
+
+}  // namespace
+
+Result<TopologyFacts> count_topology(const Model& model) {
+  TopologyFacts facts;
+  facts.shapes = model.shapes.size();
+  facts.instances = model.instances.size();
+  std::vector<std::size_t> instances(model.shapes.size(), 0);
+  for (const Instance& instance : model.instances) ++instances[instance.shape];
+  for (std::size_t k = 0; k < model.shapes.size(); ++k) {
+    if (Status status = add_shape(model.shapes[k], instances[k], facts); !status.ok()) return status;
+    if (Status status = add_gaps(model, k, facts); !status.ok()) return status;
+  }
+  return facts;
+}
+
+Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape) {
+  if (shape.faces.size() > max_joined_faces) return std::optional<JoinedShape>();
+  const Result<bool> is_open = has_free_edges(shape);
+  if (!is_open) return is_open.status();
+  if (!*is_open) return std::optional<JoinedShape>();
+  const Result<double> distance = joining_distance(shape);
+  if (!distance) return distance.status();
+  if (!(*distance > 0)) return std::optional<JoinedShape>();
+  Result<Shape> made = joined_edges(shape, *distance);
+  if (!made) return made.status();
+  return std::optional<JoinedShape>({*std::move(made), *distance});
+}
+
+Result<std::optional<JoinedFacts>> count_joined(const Model& model) {
+  if (model.surfaces.size() > max_joined_faces) return std::optional<JoinedFacts>();
+  Model joined;
+  joined.shapes = shapes_of(model);
+  joined.instances = model.instances;
+  if (model.shapes.empty()) joined.instances.resize(1);
+  double largest = 0;
+  bool any = false;
+  for (Shape& shape : joined.shapes) {
+    Result<std::optional<JoinedShape>> made = joined_if_free(shape);
+    if (!made) return made.status();
+    if (!*made) continue;
+    shape = std::move((*made)->shape);
+    largest = std::max(largest, (*made)->distance);
+    any = true;
+  }
+  if (!any) return std::optional<JoinedFacts>();
+  const Result<TopologyFacts> topology = count_topology(joined);
+  if (!topology) return topology.status();
+  return std::optional<JoinedFacts>({*topology, largest});
+}
+
+std::string topology_lines(const Model& model, const TopologyFacts& facts) {
+  if (facts.shapes == 0) return {};
+  const std::string gap = facts.gap > 0 ? readable(facts.gap, 3) + ", at " + name_of(model, facts.gap_shape) +
+                                              ", edge " + std::to_string(facts.gap_edge)
+                                        : "0";
+  return "\n  shapes           " + counted(facts.shapes, "shape") + " at " + counted(facts.instances, "place") +
+         "\n  solids           " + counted(facts.solids, "solid") + "; shells: " + std::to_string(facts.closed_shells) +
+         " closed, " + std::to_string(facts.open_shells) + " open" + "\n  edges            " +
+         counted(facts.edges, "edge") + ": " + std::to_string(facts.two) + " of two faces, " +
+         std::to_string(facts.one) + " of one, " + std::to_string(facts.more) + " of more" + "\n  largest gap      " +
+         gap + "; sampled, " + std::to_string(gap_samples) + " points of each edge";
+}
+
+Json topology_json(const Model& model, const TopologyFacts& facts) {
+  return {{"shapes", facts.shapes},
+          {"instances", facts.instances},
+          {"solids", facts.solids},
+          {"closed_shells", facts.closed_shells},
+          {"open_shells", facts.open_shells},
+          {"vertices", facts.vertices},
+          {"edges", facts.edges},
+          {"edges_of_one_face", facts.one},
+          {"edges_of_two_faces", facts.two},
+          {"edges_of_more_faces", facts.more},
+          {"degenerate_edges", facts.points},
+          {"largest_gap", facts.gap},
+          {"largest_gap_shape", facts.gap > 0 ? Json(*model.shapes[facts.gap_shape].name) : Json()},
+          {"gap_samples", gap_samples}};
+}
+
+std::string joined_line(const std::optional<JoinedFacts>& facts) {
+  if (!facts) return {};
+  const TopologyFacts& t = facts->topology;
+  return "\n  if joined        " + counted(t.edges, "edge") + ": " + std::to_string(t.two) + " of two faces, " +
+         std::to_string(t.one) + " of one, " + std::to_string(t.more) +
+         " of more; shells: " + std::to_string(t.closed_shells) + " closed, " + std::to_string(t.open_shells) +
+         " open; within " + readable(facts->distance, 3) + ", largest gap " + readable(t.gap, 3);
+}
+
+Json joined_json(const std::optional<JoinedFacts>& facts) {
+  if (!facts) return {};
+  const TopologyFacts& t = facts->topology;
+  return {{"distance", facts->distance},
+          {"closed_shells", t.closed_shells},
+          {"open_shells", t.open_shells},
+          {"vertices", t.vertices},
+          {"edges", t.edges},
+          {"edges_of_one_face", t.one},
+          {"edges_of_two_faces", t.two},
+          {"edges_of_more_faces", t.more},
+          {"degenerate_edges", t.points},
+          {"largest_gap", t.gap}};
+}
+
+std::string unit_line(const Model& model) {
+  if (model.unit.empty()) return {};
+  const bool other = !model.file_unit.empty() && model.file_unit != model.unit;
+  return "\n  unit             " + model.unit + (other ? " (in the file: " + model.file_unit + ")" : "");
+}
+
+}  // namespace tessera::cli

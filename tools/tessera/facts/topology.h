@@ -1,0 +1,60 @@
+#pragma once
+// The shapes of a model: solids, shells, edges, and how far faces are apart along them.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "console/json.h"
+#include "tessera/model.h"
+#include "tessera/status.h"
+
+namespace tessera::cli {
+
+/// Counts over all instances.
+struct TopologyFacts {
+  std::size_t shapes = 0, instances = 0, solids = 0, closed_shells = 0, open_shells = 0, vertices = 0;
+  std::size_t edges = 0;                    ///< save points, such as poles
+  std::size_t one = 0, two = 0, more = 0;   ///< edges by their number of coedges; a seam has two
+  std::size_t points = 0;                   ///< degenerate edges
+  double gap = 0;                           ///< the largest distance of two faces along an edge, in the shape's space
+  std::size_t gap_shape = 0, gap_edge = 0;  ///< where it is
+};
+inline constexpr int gap_samples = 65;  ///< of each edge
+
+/// Counts. Errors: those of edge_gaps().
+Result<TopologyFacts> count_topology(const Model& model);
+
+/// The facts of a model once joined_edges() has joined its edges.
+struct JoinedFacts {
+  TopologyFacts topology;
+  double distance = 0;  ///< within which they are joined, the largest of all shapes
+};
+inline constexpr std::size_t max_joined_faces = 20000;
+
+/// A shape whose edges joined_edges() has joined within a distance.
+struct JoinedShape {
+  Shape shape;
+  double distance = 0;
+};
+/// Joins the edges of a shape within joining_distance(). Empty where nothing is to be joined, see count_joined(). Errors:
+/// those of joined_edges().
+Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape);
+
+/// Joins edges within joining_distance() and counts. Empty where nothing is to be joined: all edges have two faces, or
+/// there are more than max_joined_faces. Errors: those of joined_edges().
+Result<std::optional<JoinedFacts>> count_joined(const Model& model);
+
+/// Lines of `info`; empty if the model has no shapes.
+std::string topology_lines(const Model& model, const TopologyFacts& facts);
+Json topology_json(const Model& model, const TopologyFacts& facts);
+
+/// A line of `info`; empty without facts.
+std::string joined_line(const std::optional<JoinedFacts>& facts);
+/// Null without facts.
+Json joined_json(const std::optional<JoinedFacts>& facts);
+
+/// "unit   mm (in the file: INCH)"; empty if no unit is stated.
+std::string unit_line(const Model& model);
+
+}  // namespace tessera::cli

@@ -1,0 +1,296 @@
+#include "stages/load.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <sstream>
+
+#include "console/output.h"
+#include "console/progress.h"
+#include "console/standard_input.h"
+#include "facts/topology.h"
+#include "line/arguments.h"
+#include "tessera/cad.h"
+#include "tessera/io.h"
+
+namespace tessera::cli {
+namespace {
+
+/// As read_model(), and an interrupt ends the reader of CAD files.
+Result<Model> read_file_model(const std::string& path) {
+  return is_cad_file(path) ? read_cad(path, {.cancel = &interrupted()}) : read_model(path);
+}
+
+/// Reads a file, or standard input, whose messages then name it instead of its copy.
+Result<Model> read_any_model(const std::string& path, const std::string& input_format) {
+  if (path != stream_name) return read_file_model(path);
+  const Result<StandardInput> input = StandardInput::make(input_format);
+  if (!input) return input.status();
+  Result<Model> model = read_file_model(input->path());
+  if (!model) return Status(model.status().code(), input->renamed(model.status().message()), model.status().index());
+  for (std::string& warning : model->warnings) warning = input->renamed(warning);
+  return model;
+}
+
+std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
+  return static_cast<std::size_t>(std::count_if(surfaces.begin(), surfaces.end(),
+                                                [](const ModelSurface& surface) { return !surface.trims->empty(); }));
+}
+
+/// Converts surfaces on all threads; if several fail, reports the first one.
+Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit) {
+  const std::size_t count = model.surfaces.size();
+  std::vector<std::optional<Result<PatchGrid>>> results(count);
+  Progress progress("converting");
+  std::mutex mutex;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    if (interrupted()) return;
+    results[k].emplace(to_bezier(model.surfaces[k], fit));
+    const std::lock_guard lock(mutex);
+    progress.tell(static_cast<double>(++done) / static_cast<double>(count));
+  });
+  std::vector<PatchGrid> grids;
+  grids.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!results[k]) return Status(StatusCode::cancelled, "interrupted");
+    if (!*results[k]) return in_surface(model, k, results[k]->status());
+    grids.push_back(*std::move(*results[k]));
+  }
+  return grids;
+}
+
+/// Adds the surfaces and shapes of another file.
+void append(Model& model, Model&& other) {
+  const auto move = [](auto& to, auto& from) { std::move(from.begin(), from.end(), std::back_inserter(to)); };
+  for (Instance& instance : other.instances) {
+    instance.shape += static_cast<std::uint32_t>(model.shapes.size());
+    instance.first_surface += model.surfaces.size();
+  }
+  move(model.surfaces, other.surfaces);
+  move(model.warnings, other.warnings);
+  move(model.shapes, other.shapes);
+  move(model.instances, other.instances);
+  if (model.unit != other.unit) model.unit.clear();
+  if (model.file_unit != other.file_unit) model.file_unit.clear();
+}
+
+/// Reads one file and adds it to `loaded`.
+Status add_file(const std::string& file, const ModelOptions& options, With with, Timings& timings, Loaded& loaded) {
+  Result<Model> model = [&] {
+    const auto phase = timings.phase("read");
+    return read_any_model(file, options.input_format);
+  }();
+  if (!model) return model.status();
+  say_warnings(model->warnings);
+  const bool has_shapes = !model->instances.empty();
+  if (with == With::patches || (with == With::shapes && !has_shapes)) {
+    const auto phase = timings.phase("convert");
+    Result<std::vector<PatchGrid>> grids = convert(*model, options.fit);
+    if (!grids) return in_file(file, grids.status());
+    std::move(grids->begin(), grids->end(), std::back_inserter(loaded.grids));
+  }
+  loaded.all_have_shapes &= has_shapes;
+  loaded.files.push_back(file);
+  loaded.first.push_back(loaded.model.surfaces.size());
+  if (loaded.files.size() == 1)
+    loaded.model = *std::move(model);
+  else
+    append(loaded.model, *std::move(model));
+  if (!loaded.all_have_shapes) loaded.model.shapes.clear(), loaded.model.instances.clear();  // they would not be all
+  return {};
+}
+
+/// A message that begins with "surface 3 (rim): ", as surfaces of a model or faces of a shape are counted, with the
+/// place in the file instead. `first` is the model's surface that is counted as 0.
+Status in_its_file(const Loaded& loaded, std::size_t first, const Status& status) {
+  if (status.index() == Status::no_index) return in_file(loaded.files[0], status);
+  const std::size_t surface = first + static_cast<std::size_t>(status.index());
+  const std::string& message = status.message();
+  const std::string& name = *loaded.model.surfaces[surface].name;
+  const std::string prefix =
+      "surface " + std::to_string(status.index()) + (name.empty() ? "" : " (" + name + ")") + ": ";
+  return loaded.in_surface(surface, {status.code(), message.substr(message.starts_with(prefix) ? prefix.size() : 0)});
+}
+
+/// The set, after its faults are printed, or its error, with the places in the file.
+Result<PatchSet> with_places(const Loaded& loaded, std::size_t first, Result<PatchSet> set) {
+  if (!set) return in_its_file(loaded, first, set.status());
+  for (const Status& fault : set->trim_faults())
+    warn(in_its_file(loaded, first, fault).message() + "; it is kept whole");
+  return set;
+}
+
+}  // namespace
+
+std::vector<std::string> model_format_names() {
+  std::vector<std::string> names;
+  std::istringstream list(model_formats());
+  for (std::string name; list >> name;) names.push_back(name.substr(1, name.find(',') - 1));
+  return names;
+}
+
+std::string model_formats() { return ".bpt, .bv, .g2, .json, .obj, .rib, .step, .stp, .iges, .igs, .brep, .brp"; }
+
+void add_models(Command& command, ModelOptions& options) {
+  command
+      .add_words("MODEL", "FILE",
+                 "Files with surfaces (" + model_formats() + "), patterns of their names, or - for standard input",
+                 options.files)
+      .check(fault_of_name);
+  command.add_choice("--input-format", model_format_names(), "Format of standard input, for MODEL -",
+                     [&options](const std::string& name) { options.input_format = name; });
+}
+
+void check_input(const ModelOptions& options) {
+  const auto streams = std::count(options.files.begin(), options.files.end(), stream_name);
+  if (streams > 1) throw UsageError("MODEL", "- is there " + std::to_string(streams) + " times; give it once");
+  if (streams > 0 && options.input_format.empty()) throw UsageError("MODEL", "- needs --input-format NAME");
+  if (streams == 0 && !options.input_format.empty())
+    throw UsageError("--input-format", "is for MODEL - only; the extension of a file decides its format");
+}
+
+void check_input_of_team(const ModelOptions& options) {
+  if (std::ranges::find(options.files, stream_name) != options.files.end())
+    throw UsageError("MODEL", "processes cannot share standard input: name a file");
+}
+
+void add_reading(Command& command, ModelOptions& options) {
+  command.add_length("--fit-tolerance", "LENGTH",
+                     "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
+                     "[1e-6 of the surface's size]",
+                     [&options](double length) { options.fit.tolerance = length; });
+  command
+      .add("--cad-reader", "FILE", "Program that reads CAD files [the tessera-cad-reader beside tessera]",
+           [](const std::string& file) { ::setenv("TESSERA_CAD_READER", file.c_str(), 1); })
+      .check(fault_of_name);
+}
+
+void add_untrimmed(Command& command, ModelOptions& options) {
+  command.add_flag("--untrimmed", "Ignore trimming loops: take whole surfaces", options.untrimmed);
+}
+
+std::size_t Loaded::trimmed() const { return count_trimmed(model.surfaces); }
+
+Status Loaded::in_surface(std::size_t surface, const Status& status) const {
+  const auto after = std::upper_bound(first.begin(), first.end(), surface);
+  const auto file = static_cast<std::size_t>(after - first.begin()) - 1;
+  const std::string& name = *model.surfaces[surface].name;
+  return Status(status.code(), files[file] + ": surface " + std::to_string(surface - first[file]) +
+                                   (name.empty() ? "" : " (" + name + ")") + ": " + status.message());
+}
+
+Status Loaded::status() const { return failed.empty() ? Status() : already_said(failed.back().second.code()); }
+
+Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings) {
+  Loaded loaded;
+  for (const std::string& file : job.inputs) {
+    const Status status = add_file(file, options, with, timings, loaded);
+    if (status.ok()) continue;
+    if (job.inputs.size() == 1 || status.code() == StatusCode::cancelled || interrupted()) return status;
+    complain(status.message());
+    loaded.failed.emplace_back(file, status);
+  }
+  if (!loaded.files.empty()) return loaded;
+  return Status(loaded.failed.back().second.code(),
+                "none of the " + std::to_string(loaded.failed.size()) + " models can be used");
+}
+
+void say_warnings(const std::vector<std::string>& warnings) {
+  constexpr std::size_t limit = 20;  // lines; a file may hold a long list of unread parts
+  const std::size_t count = warnings.size();
+  for (std::size_t k = 0; k < std::min(count, limit); ++k) warn(warnings[k]);
+  if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
+}
+
+Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings) {
+  if (loaded.grids.size() == loaded.model.surfaces.size()) return {};
+  const auto phase = timings.phase("convert");
+  Result<std::vector<PatchGrid>> grids = convert(loaded.model, options.fit);
+  if (!grids) return in_its_file(loaded, 0, grids.status());
+  loaded.grids = *std::move(grids);
+  return {};
+}
+
+Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
+  const auto phase = timings.phase("pack");
+  PatchSetOptions packing;
+  packing.trims = !options.untrimmed;
+  return with_places(loaded, 0, make_patch_set(loaded.model, loaded.grids, packing));
+}
+
+Result<PatchSet> pack_faces(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
+  if (options.untrimmed || loaded.trimmed() == 0 || !loaded.model.instances.empty())
+    return pack(loaded, options, timings);
+  const Result<std::optional<JoinedShape>> joined = [&] {
+    const auto phase = timings.phase("join");
+    Shape faces;
+    for (const ModelSurface& surface : loaded.model.surfaces) faces.faces.push_back({surface});
+    return joined_if_free(faces);
+  }();
+  if (!joined || !*joined) return pack(loaded, options, timings);
+  const auto phase = timings.phase("pack");
+  return with_places(loaded, 0, make_patch_set((*joined)->shape, {}, options.fit));
+}
+
+Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
+                            const ModelOptions& options, Timings& timings) {
+  const auto phase = timings.phase("pack");
+  PatchSetOptions packing;
+  packing.trims = !options.untrimmed;
+  FitOptions fit = options.fit;
+  if (stretch > 0) fit.tolerance /= stretch;
+  // Files may leave it to their readers to find which edges are the same. Where that fails, faces stay unconnected.
+  const Shape& stated = loaded.model.shapes[shape];
+  const Result<std::optional<JoinedShape>> joined =
+      packing.trims ? joined_if_free(stated) : Result<std::optional<JoinedShape>>(std::optional<JoinedShape>());
+  const Shape& used = joined && *joined ? (*joined)->shape : stated;
+  return with_places(loaded, first_surface, make_patch_set(used, packing, fit));
+}
+
+Json files_json(const Loaded& loaded) {
+  Json failed = Json::array();
+  for (const auto& [file, status] : loaded.failed) {
+    failed.push_back({{"file", file}, {"code", std::string(name(status.code()))}, {"message", status.message()}});
+  }
+  return {{"models", loaded.files}, {"failed", failed}};
+}
+
+void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set) {
+  add_model_facts(object, loaded, set.patch_count(), set.fit_error());
+}
+void add_model_facts(Json& object, const Loaded& loaded, std::size_t patches, const FitError& error) {
+  object["surfaces"] = loaded.model.surfaces.size();
+  object["patches"] = patches;
+  object["trimmed_surfaces"] = loaded.trimmed();
+  object["fit_error"] = fit_json(error);
+  object["warnings"] = warnings_json(loaded.model);
+}
+
+Json warnings_json(const Model& model) {
+  Json warnings = Json::array();
+  for (const std::string& warning : model.warnings) warnings.push_back(warning);
+  return warnings;
+}
+
+std::string trims_text(std::size_t trimmed) {
+  if (trimmed == 0) return {};
+  return std::to_string(trimmed) + (trimmed == 1 ? " surface is trimmed" : " surfaces are trimmed");
+}
+
+std::string fit_line(const PatchSet& set) { return fit_line(set.fit_error()); }
+std::string fit_line(const FitError& error) {
+  if (error.distance == 0 && error.certified) return {};
+  return "  functions fitted to within " + readable(error.distance, 3) +
+         (error.certified ? ", proven\n" : ", sampled\n");
+}
+
+Json fit_json(const PatchSet& set) { return fit_json(set.fit_error()); }
+Json fit_json(const FitError& error) { return {{"distance", error.distance}, {"certified", error.certified}}; }
+
+}  // namespace tessera::cli
