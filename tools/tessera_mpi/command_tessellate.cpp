@@ -101,31 +101,23 @@ Status write_vtp(const PartMesh& own, const PartSums& sums, const MeshTotals& to
   return written;
 }
 
-/// The distance that the mesh keeps, in words; rates keep none.
-std::string kept(const PartSums& sums) {
-  if (!std::isfinite(sums.bound)) return "";
-  return ", within " + readable(sums.bound, 3) + " of the surfaces" + (sums.certified ? ", proven" : "");
-}
-
 Status report(const Job& job, const CommonOptions& common, const PartSums& sums, const Transport& transport,
               const Timings& timings) {
-  if (!common.json)
-    return print_report(job.output, job.output + ": " + counted(sums.all.vertices, "vertex", "vertices") + ", " +
-                                        counted(sums.all.triangles + 2 * sums.all.quads, "triangle") + kept(sums) +
-                                        ", by " + counted(transport.part_count(), "rank") + "\n");
-  Json object{{"output", job.output},
-              {"models", job.inputs},
-              {"ranks", transport.part_count()},
-              {"patches", sums.all.patches},
-              {"vertices", sums.all.vertices},
-              {"triangles", sums.all.triangles},
-              {"quads", sums.all.quads},
-              {"bound", std::isfinite(sums.bound) ? Json(sums.bound) : Json()},
-              {"certified", sums.certified},
-              {"gap", sums.gap},
-              {"bytes_sent", transport.bytes_sent()}};
-  add_seconds(object, common, timings);
-  return print_report(job.output, object.text() + "\n");
+  const bool has_bound = std::isfinite(sums.bound);  // rates keep none
+  Report report;
+  report.add("output", job.output, job.output + ": ");
+  report.add("models", job.inputs);
+  report.add("ranks", transport.part_count());
+  report.add("patches", sums.all.patches);
+  report.add("vertices", sums.all.vertices, counted(sums.all.vertices, "vertex", "vertices") + ", ");
+  report.add("triangles", sums.all.triangles, counted(sums.all.triangles + 2 * sums.all.quads, "triangle"));
+  report.add("quads", sums.all.quads);
+  report.add("bound", has_bound ? Json(sums.bound) : Json(),
+             has_bound ? ", within " + readable(sums.bound, 3) + " of the surfaces" : "");
+  report.add("certified", sums.certified, has_bound && sums.certified ? ", proven" : "");
+  report.add("gap", sums.gap);
+  report.add("bytes_sent", transport.bytes_sent(), ", by " + counted(transport.part_count(), "rank"));
+  return report.print(job.output, common, timings);
 }
 
 bool is_ply(const std::string& path) { return lower_extension(path) == ".ply"; }

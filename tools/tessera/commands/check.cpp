@@ -4,6 +4,7 @@
 
 #include "batch/jobs.h"
 #include "commands/commands.h"
+#include "console/report.h"
 #include "line/arguments.h"
 #include "tessera/io.h"
 
@@ -15,37 +16,26 @@ struct CheckOptions {
   bool require_closed = false;
 };
 
-Json as_json(const std::string& mesh, const MeshReport& report) {
-  return {{"mesh", mesh},
-          {"vertices", report.vertices},
-          {"distinct_positions", report.distinct_positions},
-          {"triangles", report.triangles},
-          {"quads", report.quads},
-          {"open_edges", report.open_edges},
-          {"non_manifold_edges", report.non_manifold_edges},
-          {"inconsistent_edges", report.inconsistent_edges},
-          {"t_junctions", report.t_junctions},
-          {"flipped_triangles", report.flipped_triangles},
-          {"degenerate_triangles", report.degenerate_triangles},
-          {"non_finite_vertices", report.non_finite_vertices},
-          {"closed", report.closed()}};
-}
-
-std::string as_text(const std::string& mesh, const MeshReport& report) {
-  const auto line = [](const char* what, std::size_t count, const char* note = "") {
-    return std::string("  ") + what + std::to_string(count) + note + "\n";
+Report report_of(const std::string& mesh, const MeshReport& found) {
+  Report report;
+  report.add("mesh", mesh, mesh + ": " + (found.closed() ? "closed" : "not closed"));
+  const auto add = [&](const char* name, std::size_t count, const char* label, const char* note = "") {
+    report.add(name, count, std::string("\n  ") + label + std::to_string(count) + note);
   };
-  return mesh + ": " + (report.closed() ? "closed" : "not closed") + "\n" +
-         line("vertices              ", report.vertices) + line("distinct positions    ", report.distinct_positions) +
-         line("triangles             ", report.triangles, report.quads > 0 ? "  (with two for each quad)" : "") +
-         line("quads                 ", report.quads) +
-         line("open edges            ", report.open_edges, "  (of one triangle)") +
-         line("non-manifold edges    ", report.non_manifold_edges, "  (of three triangles or more)") +
-         line("inconsistent edges    ", report.inconsistent_edges, "  (of two triangles of opposite orientation)") +
-         line("T-junctions           ", report.t_junctions, "  (vertices inside open edges)") +
-         line("flipped triangles     ", report.flipped_triangles, "  (that face away from their normals)") +
-         line("degenerate triangles  ", report.degenerate_triangles) +
-         line("NaN or infinite       ", report.non_finite_vertices, "  (vertices)");
+  add("vertices", found.vertices, "vertices              ");
+  add("distinct_positions", found.distinct_positions, "distinct positions    ");
+  add("triangles", found.triangles, "triangles             ", found.quads > 0 ? "  (with two for each quad)" : "");
+  add("quads", found.quads, "quads                 ");
+  add("open_edges", found.open_edges, "open edges            ", "  (of one triangle)");
+  add("non_manifold_edges", found.non_manifold_edges, "non-manifold edges    ", "  (of three triangles or more)");
+  add("inconsistent_edges", found.inconsistent_edges, "inconsistent edges    ",
+      "  (of two triangles of opposite orientation)");
+  add("t_junctions", found.t_junctions, "T-junctions           ", "  (vertices inside open edges)");
+  add("flipped_triangles", found.flipped_triangles, "flipped triangles     ", "  (that face away from their normals)");
+  add("degenerate_triangles", found.degenerate_triangles, "degenerate triangles  ");
+  add("non_finite_vertices", found.non_finite_vertices, "NaN or infinite       ", "  (vertices)");
+  report.add("closed", found.closed());
+  return report;
 }
 
 Status run_check(const std::string& file, const CheckOptions& options, const CommonOptions& common, Timings& timings) {
@@ -61,9 +51,7 @@ Status run_check(const std::string& file, const CheckOptions& options, const Com
     return check(*mesh);
   }();
   if (!report) return in_file(file, report.status());
-  Json json = as_json(file, *report);
-  add_seconds(json, common, timings);
-  if (Status status = common.json ? print_json(json) : print(as_text(file, *report)); !status.ok()) return status;
+  if (Status status = report_of(file, *report).print({}, common, timings); !status.ok()) return status;
   if (report->non_finite_vertices > 0) {
     complain(file + ": " + counted(report->non_finite_vertices, "vertex", "vertices") + " with NaN or infinity");
     return already_said(StatusCode::non_finite);

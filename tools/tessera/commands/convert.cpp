@@ -20,20 +20,14 @@ struct ConvertOptions {
 
 Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, const WrittenModel& written,
               const Timings& timings) {
-  if (!common.json) {
-    return print_report(job.output, job.output + ": " + counted(written.surfaces, "surface") + ", " +
-                                        counted(written.patches, "patch", "patches") + "\n" +
-                                        fit_line(written.fit_error));
-  }
-  Json object = files_json(loaded);
-  object["output"] = job.output;
-  object["surfaces"] = written.surfaces;
-  object["patches"] = written.patches;
-  object["fit_error"] = fit_json(written.fit_error);
-  object["warnings"] = warnings_json(loaded.model);
-  for (const std::string& warning : written.warnings) object["warnings"].push_back(warning);
-  add_seconds(object, common, timings);
-  return print_report(job.output, object.text() + "\n");
+  std::vector<std::string> warnings = loaded.model.warnings;
+  warnings.insert(warnings.end(), written.warnings.begin(), written.warnings.end());
+  Report report = report_of(job, loaded);
+  report.add("surfaces", written.surfaces, counted(written.surfaces, "surface"));
+  report.add("patches", written.patches, ", " + counted(written.patches, "patch", "patches"));
+  report.add("fit_error", fit_json(written.fit_error), fit_line(written.fit_error));
+  report.add("warnings", warnings);
+  return report.print(job.output, common, timings);
 }
 
 Status run_convert(const Job& job, const ConvertOptions& options, const CommonOptions& common, Timings& timings) {

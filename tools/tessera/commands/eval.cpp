@@ -272,14 +272,12 @@ Result<Places> places_of(const EvalOptions& options, const Model& model) {
 
 Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, std::size_t rows,
               const Timings& timings) {
-  Json object = files_json(loaded);
-  object["output"] = job.output;
-  object["rows"] = rows;
-  object["surfaces"] = loaded.model.surfaces.size();
-  object["trimmed_surfaces"] = loaded.trimmed();
-  object["warnings"] = warnings_json(loaded.model);
-  add_seconds(object, common, timings);
-  return print_json(object);
+  Report report = report_of(job, loaded);
+  report.add("rows", rows);
+  report.add("surfaces", loaded.model.surfaces.size());
+  report.add("trimmed_surfaces", loaded.trimmed());
+  report.add("warnings", loaded.model.warnings);
+  return report.print({}, common, timings);
 }
 
 Status eval_job(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
@@ -297,9 +295,7 @@ Status eval_job(const Job& job, const EvalOptions& options, const CommonOptions&
     return write_all_rows(*loaded, *places, options, json, *out);
   }();
   if (!status.ok()) return status;
-  Json more = Json::object();
-  add_seconds(more, common, timings);
-  frame.end(more);
+  frame.end(common.timings ? Json{{"seconds", timings.as_json()}} : Json::object());
   status = out->commit();
   if (status.ok() && common.json && !job.output.empty()) status = report(job, common, *loaded, places->count, timings);
   return status.ok() ? loaded->status() : status;

@@ -1,7 +1,6 @@
 // tessera info: reports what models hold.
 
 #include <memory>
-#include <sstream>
 
 #include "batch/batch.h"
 #include "commands/commands.h"
@@ -25,9 +24,9 @@ struct InfoOptions {
 /// All that is known of one file.
 struct Findings {
   const std::string& file;
-  const Loaded& loaded;
+  const Model& model;
   const PatchSet& set;
-  Facts facts;
+  ModelCounts counts;
   TrimFacts trims;
   TopologyFacts topology;
   std::optional<JoinedFacts> joined;  ///< empty if no edges are to be joined
@@ -35,103 +34,101 @@ struct Findings {
   Isa isa;
 };
 
+std::string range_text(const Range& of) { return "[" + readable(of.least) + ", " + readable(of.largest) + "]"; }
 Json range_json(const Range& range) { return Json::array({range.least, range.largest}); }
 
-/// Null if none is stated.
-Json unit_json(const std::string& unit) { return unit.empty() ? Json() : Json(unit); }
-
-Json memory_json(const Facts& facts) {
-  return {{"model", facts.model_bytes}, {"patches", facts.patch_bytes}, {"blocks", facts.block_bytes}};
+std::string point_text(const Vec3& v) {
+  return "(" + readable(v.x) + ", " + readable(v.y) + ", " + readable(v.z) + ")";
 }
 
-Json as_json(const Findings& found) {
-  const Facts& facts = found.facts;
-  Json kinds = Json::object(), degrees = Json::array(), isas = Json::array();
-  for (const auto& [kind, count] : facts.kinds) kinds[std::string(kind)] = count;
-  for (const auto& [degree, count] : facts.degrees) {
-    degrees.push_back({{"degree_u", degree.first}, {"degree_v", degree.second}, {"patches", count}});
+void add_surfaces(Report& report, const Findings& found) {
+  const ModelCounts& counts = found.counts;
+  const std::size_t surfaces = found.model.surfaces.size();
+  const auto bytes = file_bytes(found.file);
+  report.add("model", found.file, found.file + ": ");
+  report.add("file_bytes", bytes ? Json(*bytes) : Json());
+  report.add("name", found.model.name);
+  report.add("surfaces", surfaces,
+             counted(surfaces, "surface") + ", " + counted(found.set.patch_count(), "Bezier patch", "Bezier patches") +
+                 (bytes ? ", read from " + readable_bytes(*bytes) : ""));
+  Json kinds = Json::object();
+  std::string kinds_text, degrees_text;
+  for (const auto& [kind, count] : counts.kinds) {
+    kinds[std::string(kind)] = count;
+    kinds_text += (kinds_text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(kind);
   }
-  for (const Isa isa : available_isas()) isas.push_back(std::string(name(isa)));
-  const auto bytes = file_bytes(found.file);
-  return {{"model", found.file},
-          {"file_bytes", bytes ? Json(*bytes) : Json()},
-          {"name", found.loaded.model.name},
-          {"surfaces", found.loaded.model.surfaces.size()},
-          {"kinds", kinds},
-          {"trimmed_surfaces", found.trims.trimmed},
-          {"loops", found.trims.loops},
-          {"loop_remarks", remarks_json(found.trims)},
-          {"topology", topology_json(found.loaded.model, found.topology)},
-          {"joined_topology", joined_json(found.joined)},
-          {"unit", unit_json(found.loaded.model.unit)},
-          {"file_unit", unit_json(found.loaded.model.file_unit)},
-          {"parameters",
-           {{"u", range_json(facts.u)}, {"v", range_json(facts.v)}, {"surfaces_on_unit_square", facts.on_unit_square}}},
-          {"patches", found.set.patch_count()},
-          {"degrees", degrees},
-          {"rational_patches", facts.rational},
-          {"collapsed_edges", facts.collapsed_edges},
-          {"patches_with_collapsed_edges", facts.patches_with_collapsed_edges},
-          {"joins", found.joins ? joins_json(*found.joins) : Json()},
-          {"control_points", facts.control_points},
-          {"fit_error", fit_json(found.set)},
-          {"box", {{"lower", to_json(found.set.box().lower)}, {"upper", to_json(found.set.box().upper)}}},
-          {"size", found.set.box().diagonal()},
-          {"memory_bytes", memory_json(facts)},
-          {"warnings", warnings_json(found.loaded.model)},
-          {"isa", {{"available", isas}, {"used", std::string(name(found.isa))}}}};
+  for (const auto& [degree, count] : counts.degrees)
+    degrees_text += (degrees_text.empty() ? "" : ", ") + std::to_string(count) + " of " + std::to_string(degree.first) +
+                    " x " + std::to_string(degree.second);
+  report.add("kinds", kinds,
+             "\n  kinds            " + kinds_text + "\n  degrees          " + degrees_text + "\n  rational         " +
+                 std::to_string(counts.rational) + " of the patches" + "\n  parameters       " + range_text(counts.u) +
+                 " x " + range_text(counts.v));
+  if (counts.on_unit_square < surfaces)
+    report.say(" in all; " + std::to_string(counts.on_unit_square) + " of " + std::to_string(surfaces) +
+               " on [0, 1]^2");
 }
 
-std::string list_of_kinds(const Facts& facts) {
-  std::string text;
-  for (const auto& [kind, count] : facts.kinds)
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(kind);
-  return text;
+/// Adds the unit; null in JSON and no words if none is stated.
+void add_unit(Report& report, const Model& model) {
+  const auto json = [](const std::string& unit) { return unit.empty() ? Json() : Json(unit); };
+  const bool other = !model.file_unit.empty() && model.file_unit != model.unit;
+  report.add("unit", json(model.unit), model.unit.empty() ? "" : "\n  unit             " + model.unit);
+  report.add("file_unit", json(model.file_unit),
+             !model.unit.empty() && other ? " (in the file: " + model.file_unit + ")" : "");
 }
 
-std::string list_of_degrees(const Facts& facts) {
-  std::string text;
-  for (const auto& [degree, count] : facts.degrees)
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " of " + std::to_string(degree.first) + " x " +
-            std::to_string(degree.second);
-  return text;
+void add_patches(Report& report, const Findings& found) {
+  const ModelCounts& counts = found.counts;
+  Json degrees = Json::array();
+  for (const auto& [degree, count] : counts.degrees)
+    degrees.push_back({{"degree_u", degree.first}, {"degree_v", degree.second}, {"patches", count}});
+  report.add(
+      "parameters",
+      {{"u", range_json(counts.u)}, {"v", range_json(counts.v)}, {"surfaces_on_unit_square", counts.on_unit_square}});
+  report.add("patches", found.set.patch_count());
+  report.add("degrees", degrees);
+  report.add("rational_patches", counts.rational);
+  report.add("collapsed_edges", counts.collapsed_edges,
+             "\n  collapsed edges  " + std::to_string(counts.collapsed_edges));
+  report.add("patches_with_collapsed_edges", counts.patches_with_collapsed_edges,
+             " on " + std::to_string(counts.patches_with_collapsed_edges) + " patches");
 }
 
-std::string parameters_text(const Facts& facts, std::size_t surfaces) {
-  const auto range = [](const Range& of) { return "[" + readable(of.least) + ", " + readable(of.largest) + "]"; };
-  return range(facts.u) + " x " + range(facts.v) +
-         (facts.on_unit_square == surfaces ? ""
-                                           : " in all; " + std::to_string(facts.on_unit_square) + " of " +
-                                                 std::to_string(surfaces) + " on [0, 1]^2");
+void add_memory(Report& report, const Findings& found) {
+  const ModelCounts& counts = found.counts;
+  const Box3& box = found.set.box();
+  report.add("control_points", counts.control_points,
+             "\n  control points   " + std::to_string(counts.control_points) + ", of the patches");
+  report.add("fit_error", fit_json(found.set.fit_error()));
+  report.add(
+      "box", {{"lower", to_json(box.lower)}, {"upper", to_json(box.upper)}},
+      "\n  bounding box     " + point_text(box.lower) + " to " + point_text(box.upper) + ", of the control points");
+  report.add("size", box.diagonal());
+  report.add("memory_bytes",
+             {{"model", counts.model_bytes}, {"patches", counts.patch_bytes}, {"blocks", counts.block_bytes}},
+             "\n  memory           model " + readable_bytes(counts.model_bytes) + ", patches " +
+                 readable_bytes(counts.patch_bytes) + ", blocks " + readable_bytes(counts.block_bytes));
+  report.add("warnings", found.model.warnings);
 }
 
-std::string as_text(const Findings& found) {
-  const Facts& facts = found.facts;
-  const auto point = [](const Vec3& v) {
-    return "(" + readable(v.x) + ", " + readable(v.y) + ", " + readable(v.z) + ")";
-  };
-  const std::size_t surfaces = found.loaded.model.surfaces.size();
-  const auto bytes = file_bytes(found.file);
-  std::ostringstream text;
-  text << found.file << ": " << counted(surfaces, "surface") << ", "
-       << counted(found.set.patch_count(), "Bezier patch", "Bezier patches")
-       << (bytes ? ", read from " + readable_bytes(*bytes) : "") << "\n  kinds            " << list_of_kinds(facts)
-       << "\n  degrees          " << list_of_degrees(facts) << "\n  rational         " << facts.rational
-       << " of the patches"
-       << "\n  parameters       " << parameters_text(facts, surfaces) << trims_lines(found.trims, found.loaded)
-       << topology_lines(found.loaded.model, found.topology) << joined_line(found.joined)
-       << unit_line(found.loaded.model) << "\n  collapsed edges  " << facts.collapsed_edges << " on "
-       << facts.patches_with_collapsed_edges << " patches\n"
-       << (found.joins ? joins_text(*found.joins) : "  joins            left out, as --joins 0 says\n")
-       << "  control points   " << facts.control_points << ", of the patches"
-       << "\n  bounding box     " << point(found.set.box().lower) << " to " << point(found.set.box().upper)
-       << ", of the control points"
-       << "\n  memory           model " << readable_bytes(facts.model_bytes) << ", patches "
-       << readable_bytes(facts.patch_bytes) << ", blocks " << readable_bytes(facts.block_bytes)
-       << "\n  instruction set  " << name(found.isa) << ", of";
-  for (const Isa isa : available_isas()) text << ' ' << name(isa);
-  text << '\n' << fit_line(found.set);
-  return std::move(text).str();
+Report report_of(const Findings& found) {
+  Report report;
+  add_surfaces(report, found);
+  add_trims(report, found.trims, found.model);
+  add_topology(report, found.model, found.topology);
+  add_joined(report, found.joined);
+  add_unit(report, found.model);
+  add_patches(report, found);
+  add_joins(report, found.joins);
+  add_memory(report, found);
+  const std::string used(name(found.isa));
+  std::vector<std::string> isas;
+  for (const Isa isa : available_isas()) isas.emplace_back(name(isa));
+  report.add("isa", {{"available", isas}, {"used", used}}, "\n  instruction set  " + used + ", of");
+  for (const std::string& isa : isas) report.say(" " + isa);
+  report.say(fit_line(found.set.fit_error()));
+  return report;
 }
 
 Status run_info(const Job& job, const InfoOptions& options, const CommonOptions& common, Timings& timings) {
@@ -143,7 +140,7 @@ Status run_info(const Job& job, const InfoOptions& options, const CommonOptions&
   if (!set) return set.status();
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();
-  Findings found{job.inputs[0], *loaded, *set, count_facts(loaded->model, *set), {}, {}, {}, {}, *isa};
+  Findings found{job.inputs[0], loaded->model, *set, count_model(loaded->model, *set), {}, {}, {}, {}, *isa};
   if (loaded->trimmed() > 0) {
     const auto phase = timings.phase("trims");
     found.trims = find_trims(*loaded);
@@ -166,10 +163,7 @@ Status run_info(const Job& job, const InfoOptions& options, const CommonOptions&
     if (!joins) return in_file(job.inputs[0], joins.status());
     found.joins = *joins;
   }
-  if (!common.json) return print(as_text(found));
-  Json object = as_json(found);
-  add_seconds(object, common, timings);
-  return print_json(object);
+  return report_of(found).print({}, common, timings);
 }
 
 constexpr const char* info_footer =

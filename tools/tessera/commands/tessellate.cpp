@@ -22,10 +22,9 @@ namespace {
 
 constexpr double default_share = 1e-3;
 
-/// The tolerances that the mesh keeps, in words.
+/// The tolerances that the mesh keeps beside its bound, in words.
 std::string kept(const TessellateOptions& options, const Meshed& made) {
-  if (options.grid) return "";
-  std::string said = ", within " + readable(made.bound, 3) + " of the surfaces";
+  std::string said;
   if (options.certified.angle) {
     said += ", their normals within " + readable(made.angle, 3) + " degrees";
     if (made.patches_without_angle > 0)
@@ -41,83 +40,66 @@ std::string kept(const TessellateOptions& options, const Meshed& made) {
   return said;
 }
 
-/// How the borders of the mesh meet, in words.
-std::string joined(const TessellateOptions& options, const Meshed& made) {
-  if (options.grid) return "";
-  return (made.gap > 0 ? ", over gaps of up to " + readable(made.gap, 3) + " in the file" : "") +
-         (made.welded_borders ? ", " + counted(made.welded_borders, "border") + " welded" : "") +
-         (made.open_edges ? ", " + counted(made.open_edges, "open edge") : ", closed");
-}
-
-std::size_t count_solids(const Model& model) {
+/// Adds the shapes of a model, and "18 solids (5 shapes at 18 places), " if they were meshed.
+void add_shape_facts(Report& report, const Model& model, const Meshed& made) {
   std::size_t solids = 0;
   for (const Instance& instance : model.instances) solids += model.shapes[instance.shape].solid_count;
-  return solids;
-}
-
-/// "18 solids (5 shapes at 18 places), ", or an empty text if no shape was meshed.
-std::string parts_text(const Meshed& made, const Model& model) {
-  if (!made.by_shapes) return "";
-  const std::size_t solids = count_solids(model);
-  return (solids ? counted(solids, "solid") + " (" : "") + counted(model.shapes.size(), "shape") + " at " +
-         counted(model.instances.size(), "place") + (solids ? "), " : ", ");
-}
-
-std::string report_text(const Job& job, const TessellateOptions& options, const Loaded& loaded, const Meshed& made,
-                        const Timings& timings) {
-  return job.output + ": " + parts_text(made, loaded.model) + counted(made.size.vertices, "vertex", "vertices") + ", " +
-         counted(made.size.triangles, "triangle") + (options.quads ? ", " + counted(made.size.quads, "quad") : "") +
-         kept(options, made) + joined(options, made) +
-         (made.by_shapes ? ", in " + readable_seconds(timings.total()) : "") + "\n" + fit_line(made.fit_error);
+  const std::string shapes = counted(model.shapes.size(), "shape") + " at " + counted(model.instances.size(), "place");
+  report.add("shapes", model.shapes.size());
+  report.add("instances", model.instances.size());
+  report.add("solids", solids,
+             !made.by_shapes ? ""
+             : solids > 0    ? counted(solids, "solid") + " (" + shapes + "), "
+                             : shapes + ", ");
 }
 
 /// Adds the sizes of a mesh and the tolerances that it keeps.
-void add_mesh_facts(Json& object, const TessellateOptions& options, const Meshed& made) {
-  object["vertices"] = made.size.vertices;
-  object["triangles"] = made.size.triangles;
-  object["quads"] = made.size.quads;
+void add_mesh_facts(Report& report, const TessellateOptions& options, const Meshed& made) {
+  report.add("vertices", made.size.vertices, counted(made.size.vertices, "vertex", "vertices") + ", ");
+  report.add("triangles", made.size.triangles, counted(made.size.triangles, "triangle"));
+  report.add("quads", made.size.quads, options.quads ? ", " + counted(made.size.quads, "quad") : "");
   if (options.grid) {
-    object["rate_u"] = options.grid->first;
-    object["rate_v"] = options.grid->second;
-  } else {
-    object["precision"] = made.has_doubles ? "double" : "float";
-    object["default_relative"] = options.is_default ? Json(default_share) : Json();
-    object["bound"] = made.bound;
-    object["certified"] = made.proven && made.keeps_tolerances;
-    object["tolerance"] = std::isinf(made.tolerance) ? Json() : Json(made.tolerance);
-    object["weld"] = options.certified.weld ? Json(*options.certified.weld) : Json();
-    object["gap"] = made.gap;
+    report.add("rate_u", options.grid->first);
+    report.add("rate_v", options.grid->second);
+    return;
   }
+  report.add("precision", made.has_doubles ? "double" : "float");
+  report.add("default_relative", options.is_default ? Json(default_share) : Json());
+  report.add("bound", made.bound, ", within " + readable(made.bound, 3) + " of the surfaces");
+  report.add("certified", made.proven && made.keeps_tolerances, kept(options, made));
+  report.add("tolerance", std::isinf(made.tolerance) ? Json() : Json(made.tolerance));
+  report.add("weld", options.certified.weld ? Json(*options.certified.weld) : Json());
+  report.add("gap", made.gap);
 }
 
-/// The faults of a mesh with --strict; null without.
-Json faults_json(const TessellateOptions& options, const std::vector<std::string>& faults) {
-  return options.strict ? Json(faults) : Json();
+/// Adds how borders meet, and the faults of the mesh with --strict. A mesh of rates has none of these facts.
+void add_border_facts(Report& report, const TessellateOptions& options, const Meshed& made,
+                      const std::vector<std::string>& faults) {
+  if (options.grid) return;
+  if (made.gap > 0) report.say(", over gaps of up to " + readable(made.gap, 3) + " in the file");
+  report.add("angle", options.certified.angle ? Json(made.angle) : Json());
+  report.add("patches_without_angle", made.patches_without_angle);
+  report.add("pixels", options.pixels > 0 ? Json(made.pixels) : Json());
+  report.add("welded_borders", made.welded_borders,
+             made.welded_borders ? ", " + counted(made.welded_borders, "border") + " welded" : "");
+  report.add("open_edges", made.open_edges,
+             made.open_edges ? ", " + counted(made.open_edges, "open edge") : ", closed");
+  report.add("cut_patches", made.cut_patches);
+  report.add("crossed_surfaces", made.crossed.size());
+  report.add("rough_surfaces", made.rough.size());
+  report.add("faults", options.strict ? Json(faults) : Json());
 }
 
 Status report(const Job& job, const TessellateOptions& options, const CommonOptions& common, const Loaded& loaded,
               const Meshed& made, const std::vector<std::string>& faults, const Timings& timings) {
-  if (!common.json) return print_report(job.output, report_text(job, options, loaded, made, timings));
-  Json object = files_json(loaded);
-  object["output"] = job.output;
-  object["shapes"] = loaded.model.shapes.size();
-  object["instances"] = loaded.model.instances.size();
-  object["solids"] = count_solids(loaded.model);
-  add_mesh_facts(object, options, made);
-  if (!options.grid) {
-    object["angle"] = options.certified.angle ? Json(made.angle) : Json();
-    object["patches_without_angle"] = made.patches_without_angle;
-    object["pixels"] = options.pixels > 0 ? Json(made.pixels) : Json();
-    object["welded_borders"] = made.welded_borders;
-    object["open_edges"] = made.open_edges;
-    object["cut_patches"] = made.cut_patches;
-    object["crossed_surfaces"] = made.crossed.size();
-    object["rough_surfaces"] = made.rough.size();
-  }
-  if (!options.grid) object["faults"] = faults_json(options, faults);
-  add_model_facts(object, loaded, made.patches, made.fit_error);
-  add_seconds(object, common, timings);
-  return print_report(job.output, object.text() + "\n");
+  Report report = report_of(job, loaded);
+  add_shape_facts(report, loaded.model, made);
+  add_mesh_facts(report, options, made);
+  add_border_facts(report, options, made, faults);
+  add_model_facts(report, loaded, made.patches, made.fit_error);
+  if (made.by_shapes) report.say(", in " + readable_seconds(timings.total()));
+  report.say(fit_line(made.fit_error));
+  return report.print(job.output, common, timings);
 }
 
 Result<Meshed> make_meshes(const TessellateOptions& options, Loaded& loaded, const std::string& path,
@@ -134,29 +116,21 @@ TessellateOptions told_of_pieces(TessellateOptions options) {
   return options;
 }
 
-std::string pieces_text(const Job& job, const TessellateOptions& options, const InPieces& result) {
+Status report_pieces(const Job& job, const TessellateOptions& options, const CommonOptions& common,
+                     const InPieces& result, const std::vector<std::string>& faults, const Timings& timings) {
   const Meshed& made = result.made;
-  return job.output + ": " + counted(result.pieces, "piece") + ", " +
-         counted(made.size.vertices, "vertex", "vertices") + ", " + counted(made.size.triangles, "triangle") +
-         (options.quads ? ", " + counted(made.size.quads, "quad") : "") + kept(told_of_pieces(options), made) + "\n" +
-         fit_line(made.fit_error);
-}
-
-std::string pieces_json(const Job& job, const TessellateOptions& options, const CommonOptions& common,
-                        const InPieces& result, const std::vector<std::string>& faults, const Timings& timings) {
-  const Meshed& made = result.made;
-  Json object = {{"models", job.inputs}, {"failed", Json::array()}};
-  object["output"] = job.output;
-  object["pieces"] = result.pieces;
-  add_mesh_facts(object, options, made);
-  object["surfaces"] = result.surfaces;
-  object["patches"] = made.patches;
-  object["trimmed_surfaces"] = result.trimmed;
-  object["fit_error"] = fit_json(made.fit_error);
-  object["warnings"] = result.warnings;
-  if (!options.grid) object["faults"] = faults_json(options, faults);
-  add_seconds(object, common, timings);
-  return object.text() + "\n";
+  Loaded read;
+  read.files = job.inputs;
+  Report report = report_of(job, read);
+  report.add("pieces", result.pieces, counted(result.pieces, "piece") + ", ");
+  add_mesh_facts(report, told_of_pieces(options), made);
+  report.add("surfaces", result.surfaces);
+  report.add("patches", made.patches);
+  report.add("trimmed_surfaces", result.trimmed);
+  report.add("fit_error", fit_json(made.fit_error), fit_line(made.fit_error));
+  report.add("warnings", result.warnings);
+  if (!options.grid) report.add("faults", options.strict ? Json(faults) : Json());
+  return report.print(job.output, common, timings);
 }
 
 /// Reads, meshes and writes a model that is larger than memory.
@@ -168,8 +142,7 @@ Status run_in_pieces(const Job& job, const TessellateOptions& options, const Com
   warn_of_rounding(job.output, made);
   const std::vector<std::string> faults =
       options.strict ? mesh_faults(result->warnings, made) : std::vector<std::string>();
-  const Status said = print_report(job.output, common.json ? pieces_json(job, options, common, *result, faults, timings)
-                                                           : pieces_text(job, options, *result));
+  const Status said = report_pieces(job, options, common, *result, faults, timings);
   return said.ok() ? complain_of(job.output, faults) : said;
 }
 

@@ -1,6 +1,5 @@
 #include "console/output.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -45,12 +44,6 @@ void remove_empty_folders() {
 }
 
 bool is_stream(const std::string& output) { return output == stream_name; }
-
-Status print_report(const std::string& output, std::string_view text) {
-  if (!is_stream(output)) return print(text);
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  return {};
-}
 
 std::string format_path(const std::string& output, const std::string& format) {
   return is_stream(output) ? "standard output." + format : output;

@@ -25,8 +25,6 @@ void remove_empty_folders();
 
 /// Whether the output is standard output, so that reports must not go there.
 bool is_stream(const std::string& output);
-/// Prints a command's report: on standard output, or on standard error if the output itself is standard output.
-Status print_report(const std::string& output, std::string_view text);
 /// The path whose extension decides an output's format: "standard output.ply" for "-" and the format "ply".
 std::string format_path(const std::string& output, const std::string& format);
 /// Adds --format for outputs to "-": one of these words.

@@ -56,42 +56,42 @@ void widen(Range& range, double from, double to, bool first) {
   range.largest = first ? to : std::max(range.largest, to);
 }
 
-void count_surfaces(const Model& model, Facts& facts) {
+void count_surfaces(const Model& model, ModelCounts& counts) {
   bool first = true;
   for (const ModelSurface& surface : model.surfaces) {
-    ++facts.kinds[kind_name(surface.surface)];
-    facts.model_bytes += bytes_of(surface);
+    ++counts.kinds[kind_name(surface.surface)];
+    counts.model_bytes += bytes_of(surface);
     const Domain d = domain(surface.surface);
-    facts.on_unit_square += d == Domain{};
-    widen(facts.u, d.u0, d.u1, first);
-    widen(facts.v, d.v0, d.v1, first);
+    counts.on_unit_square += d == Domain{};
+    widen(counts.u, d.u0, d.u1, first);
+    widen(counts.v, d.v0, d.v1, first);
     first = false;
   }
 }
 
-void count_patches(const PatchSet& set, Facts& facts) {
+void count_patches(const PatchSet& set, ModelCounts& counts) {
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const BezierPatch& patch = set.patch(k);
-    ++facts.degrees[{patch.degree_u(), patch.degree_v()}];
-    facts.rational += patch.is_rational();
-    facts.control_points += patch.points().size();
-    facts.patch_bytes +=
+    ++counts.degrees[{patch.degree_u(), patch.degree_v()}];
+    counts.rational += patch.is_rational();
+    counts.control_points += patch.points().size();
+    counts.patch_bytes +=
         sizeof patch + sizeof(PatchSource) + array_bytes(patch.points()) + array_bytes(patch.weights());
     const EdgeMask collapsed = patch.collapsed_edges();
-    for (const Edge edge : {Edge::u0, Edge::u1, Edge::v0, Edge::v1}) facts.collapsed_edges += collapsed.has(edge);
-    facts.patches_with_collapsed_edges += collapsed.any();
+    for (const Edge edge : {Edge::u0, Edge::u1, Edge::v0, Edge::v1}) counts.collapsed_edges += collapsed.has(edge);
+    counts.patches_with_collapsed_edges += collapsed.any();
   }
   const std::size_t all = set.memory_bytes();
-  facts.block_bytes = all - std::min(all, facts.patch_bytes);
+  counts.block_bytes = all - std::min(all, counts.patch_bytes);
 }
 
 }  // namespace
 
-Facts count_facts(const Model& model, const PatchSet& set) {
-  Facts facts;
-  count_surfaces(model, facts);
-  count_patches(set, facts);
-  return facts;
+ModelCounts count_model(const Model& model, const PatchSet& set) {
+  ModelCounts counts;
+  count_surfaces(model, counts);
+  count_patches(set, counts);
+  return counts;
 }
 
 std::optional<std::uintmax_t> file_bytes(const std::string& path) {

@@ -18,7 +18,7 @@ struct Range {
   double least = 0, largest = 0;
 };
 
-struct Facts {
+struct ModelCounts {
   std::map<std::string_view, std::size_t> kinds;       ///< kind -> surfaces
   std::map<std::pair<int, int>, std::size_t> degrees;  ///< (along u, along v) -> patches
   std::size_t rational = 0, control_points = 0;        ///< of patches
@@ -30,7 +30,7 @@ struct Facts {
 
 /// Counts. Sizes in memory are those of the surfaces with their points, weights, knots and trims, without the contents
 /// of callables; of the patches; of their packed blocks with the tables that belong to them.
-Facts count_facts(const Model& model, const PatchSet& set);
+ModelCounts count_model(const Model& model, const PatchSet& set);
 
 /// The size of a file; empty if it is not a regular file.
 std::optional<std::uintmax_t> file_bytes(const std::string& path);

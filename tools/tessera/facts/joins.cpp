@@ -106,19 +106,18 @@ Result<Joins> find_joins(const PatchSet& set, std::size_t most) {
   return found;
 }
 
-std::string joins_text(const Joins& joins) {
-  std::string text = "  joins            between surfaces " + counts_text(joins.between_surfaces) +
-                     "\n                   within surfaces " + counts_text(joins.within_surfaces) +
-                     "\n  open borders     " + std::to_string(joins.open_borders) + "\n";
-  if (joins.crowded_borders == 0) return text;
-  return text + "  crowded borders  " + std::to_string(joins.crowded_borders) + ", of three patches or more\n";
-}
-
-Json joins_json(const Joins& joins) {
-  return {{"between_surfaces", counts_json(joins.between_surfaces)},
-          {"within_surfaces", counts_json(joins.within_surfaces)},
-          {"open_borders", joins.open_borders},
-          {"crowded_borders", joins.crowded_borders}};
+void add_joins(Report& report, const std::optional<Joins>& joins) {
+  if (!joins) return report.add("joins", {}, "\n  joins            left out, as --joins 0 says");
+  report.add("joins",
+             {{"between_surfaces", counts_json(joins->between_surfaces)},
+              {"within_surfaces", counts_json(joins->within_surfaces)},
+              {"open_borders", joins->open_borders},
+              {"crowded_borders", joins->crowded_borders}},
+             "\n  joins            between surfaces " + counts_text(joins->between_surfaces) +
+                 "\n                   within surfaces " + counts_text(joins->within_surfaces) +
+                 "\n  open borders     " + std::to_string(joins->open_borders));
+  if (joins->crowded_borders > 0)
+    report.say("\n  crowded borders  " + std::to_string(joins->crowded_borders) + ", of three patches or more");
 }
 
 }  // namespace tessera::cli

@@ -2,8 +2,9 @@
 // Finds the patches that meet at a border, and measures how smoothly.
 
 #include <cstddef>
+#include <optional>
 
-#include "console/console.h"
+#include "console/report.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/patch_set.h"
 
@@ -31,8 +32,7 @@ struct Joins {
 /// threads; the figures are the same for any number of them.
 Result<Joins> find_joins(const PatchSet& set, std::size_t most);
 
-/// Two or three lines for people.
-std::string joins_text(const Joins& joins);
-Json joins_json(const Joins& joins);
+/// Adds two or three lines, or that joins are left out.
+void add_joins(Report& report, const std::optional<Joins>& joins);
 
 }  // namespace tessera::cli

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "console/console.h"
 #include "tessera/edge_matching.h"
 #include "tessera/topology.h"
 
@@ -71,6 +70,27 @@ std::string name_of(const Model& model, std::size_t shape) {
   return "shape " + std::to_string(shape) + (name.empty() ? "" : " (" + name + ")");
 }
 
+std::string shells_text(const TopologyFacts& facts) {
+  return "shells: " + std::to_string(facts.closed_shells) + " closed, " + std::to_string(facts.open_shells) + " open";
+}
+
+std::string edges_text(const TopologyFacts& facts) {
+  return counted(facts.edges, "edge") + ": " + std::to_string(facts.two) + " of two faces, " +
+         std::to_string(facts.one) + " of one, " + std::to_string(facts.more) + " of more";
+}
+
+void add_counts(Json& object, const TopologyFacts& facts) {
+  object["closed_shells"] = facts.closed_shells;
+  object["open_shells"] = facts.open_shells;
+  object["vertices"] = facts.vertices;
+  object["edges"] = facts.edges;
+  object["edges_of_one_face"] = facts.one;
+  object["edges_of_two_faces"] = facts.two;
+  object["edges_of_more_faces"] = facts.more;
+  object["degenerate_edges"] = facts.points;
+  object["largest_gap"] = facts.gap;
+}
+
 }  // namespace
 
 Result<TopologyFacts> count_topology(const Model& model) {
@@ -121,64 +141,30 @@ Result<std::optional<JoinedFacts>> count_joined(const Model& model) {
   return std::optional<JoinedFacts>({*topology, largest});
 }
 
-std::string topology_lines(const Model& model, const TopologyFacts& facts) {
-  if (facts.shapes == 0) return {};
+void add_topology(Report& report, const Model& model, const TopologyFacts& facts) {
+  Json object{{"shapes", facts.shapes}, {"instances", facts.instances}, {"solids", facts.solids}};
+  add_counts(object, facts);
+  object["largest_gap_shape"] = facts.gap > 0 ? Json(*model.shapes[facts.gap_shape].name) : Json();
+  object["gap_samples"] = gap_samples;
+  report.add("topology", object);
+  if (facts.shapes == 0) return;
   const std::string gap = facts.gap > 0 ? readable(facts.gap, 3) + ", at " + name_of(model, facts.gap_shape) +
                                               ", edge " + std::to_string(facts.gap_edge)
                                         : "0";
-  return "\n  shapes           " + counted(facts.shapes, "shape") + " at " + counted(facts.instances, "place") +
-         "\n  solids           " + counted(facts.solids, "solid") + "; shells: " + std::to_string(facts.closed_shells) +
-         " closed, " + std::to_string(facts.open_shells) + " open" + "\n  edges            " +
-         counted(facts.edges, "edge") + ": " + std::to_string(facts.two) + " of two faces, " +
-         std::to_string(facts.one) + " of one, " + std::to_string(facts.more) + " of more" + "\n  largest gap      " +
-         gap + "; sampled, " + std::to_string(gap_samples) + " points of each edge";
+  report.say("\n  shapes           " + counted(facts.shapes, "shape") + " at " + counted(facts.instances, "place") +
+             "\n  solids           " + counted(facts.solids, "solid") + "; " + shells_text(facts) +
+             "\n  edges            " + edges_text(facts) + "\n  largest gap      " + gap + "; sampled, " +
+             std::to_string(gap_samples) + " points of each edge");
 }
 
-Json topology_json(const Model& model, const TopologyFacts& facts) {
-  return {{"shapes", facts.shapes},
-          {"instances", facts.instances},
-          {"solids", facts.solids},
-          {"closed_shells", facts.closed_shells},
-          {"open_shells", facts.open_shells},
-          {"vertices", facts.vertices},
-          {"edges", facts.edges},
-          {"edges_of_one_face", facts.one},
-          {"edges_of_two_faces", facts.two},
-          {"edges_of_more_faces", facts.more},
-          {"degenerate_edges", facts.points},
-          {"largest_gap", facts.gap},
-          {"largest_gap_shape", facts.gap > 0 ? Json(*model.shapes[facts.gap_shape].name) : Json()},
-          {"gap_samples", gap_samples}};
-}
-
-std::string joined_line(const std::optional<JoinedFacts>& facts) {
-  if (!facts) return {};
-  const TopologyFacts& t = facts->topology;
-  return "\n  if joined        " + counted(t.edges, "edge") + ": " + std::to_string(t.two) + " of two faces, " +
-         std::to_string(t.one) + " of one, " + std::to_string(t.more) +
-         " of more; shells: " + std::to_string(t.closed_shells) + " closed, " + std::to_string(t.open_shells) +
-         " open; within " + readable(facts->distance, 3) + ", largest gap " + readable(t.gap, 3);
-}
-
-Json joined_json(const std::optional<JoinedFacts>& facts) {
-  if (!facts) return {};
-  const TopologyFacts& t = facts->topology;
-  return {{"distance", facts->distance},
-          {"closed_shells", t.closed_shells},
-          {"open_shells", t.open_shells},
-          {"vertices", t.vertices},
-          {"edges", t.edges},
-          {"edges_of_one_face", t.one},
-          {"edges_of_two_faces", t.two},
-          {"edges_of_more_faces", t.more},
-          {"degenerate_edges", t.points},
-          {"largest_gap", t.gap}};
-}
-
-std::string unit_line(const Model& model) {
-  if (model.unit.empty()) return {};
-  const bool other = !model.file_unit.empty() && model.file_unit != model.unit;
-  return "\n  unit             " + model.unit + (other ? " (in the file: " + model.file_unit + ")" : "");
+void add_joined(Report& report, const std::optional<JoinedFacts>& facts) {
+  if (!facts) return report.add("joined_topology", {});
+  const TopologyFacts& joined = facts->topology;
+  Json object{{"distance", facts->distance}};
+  add_counts(object, joined);
+  report.add("joined_topology", object,
+             "\n  if joined        " + edges_text(joined) + "; " + shells_text(joined) + "; within " +
+                 readable(facts->distance, 3) + ", largest gap " + readable(joined.gap, 3));
 }
 
 }  // namespace tessera::cli

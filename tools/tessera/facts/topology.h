@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "console/json.h"
+#include "console/report.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 
@@ -45,16 +45,9 @@ Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape);
 /// there are more than max_joined_faces. Errors: those of joined_edges().
 Result<std::optional<JoinedFacts>> count_joined(const Model& model);
 
-/// Lines of `info`; empty if the model has no shapes.
-std::string topology_lines(const Model& model, const TopologyFacts& facts);
-Json topology_json(const Model& model, const TopologyFacts& facts);
-
-/// A line of `info`; empty without facts.
-std::string joined_line(const std::optional<JoinedFacts>& facts);
-/// Null without facts.
-Json joined_json(const std::optional<JoinedFacts>& facts);
-
-/// "unit   mm (in the file: INCH)"; empty if no unit is stated.
-std::string unit_line(const Model& model);
+/// Adds the facts of `info`; in words only if the model has shapes.
+void add_topology(Report& report, const Model& model, const TopologyFacts& facts);
+/// Adds a line and an object, or null without facts.
+void add_joined(Report& report, const std::optional<JoinedFacts>& facts);
 
 }  // namespace tessera::cli

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "console/console.h"
 #include "tessera/trim_region.h"
 
 namespace tessera::cli {
@@ -47,23 +46,11 @@ TrimFacts find_trims(const Loaded& loaded) {
   return facts;
 }
 
-std::string trims_lines(const TrimFacts& facts, const Loaded& loaded) {
-  if (facts.trimmed == 0) return {};
+void add_trims(Report& report, const TrimFacts& facts, const Model& model) {
   constexpr std::size_t limit = 20;  // lines; --json prints all
-  std::string text = "\n  trims            " + std::to_string(facts.trimmed) + " of " +
-                     counted(loaded.model.surfaces.size(), "face") + ", " + counted(facts.loops, "loop");
-  if (!facts.remarks.empty()) text += ", " + counted(facts.remarks.size(), "remark") + ":";
-  for (std::size_t k = 0; k < std::min(limit, facts.remarks.size()); ++k) {
-    const SurfaceRemark& remark = facts.remarks[k];
-    const std::string& name = *loaded.model.surfaces[remark.surface].name;
-    text += "\n    surface " + std::to_string(remark.surface) + (name.empty() ? "" : " (" + name + ")") + ": " +
-            remark.text;
-  }
-  if (facts.remarks.size() > limit) text += "\n    and " + std::to_string(facts.remarks.size() - limit) + " more";
-  return text;
-}
-
-Json remarks_json(const TrimFacts& facts) {
+  const std::size_t count = facts.remarks.size();
+  report.add("trimmed_surfaces", facts.trimmed);
+  report.add("loops", facts.loops);
   Json list = Json::array();
   for (const SurfaceRemark& remark : facts.remarks)
     list.push_back({{"surface", remark.surface},
@@ -71,7 +58,17 @@ Json remarks_json(const TrimFacts& facts) {
                     {"fault", remark.fault ? std::string(name_of(*remark.fault)) : "unusable"},
                     {"size", remark.size},
                     {"text", remark.text}});
-  return list;
+  report.add("loop_remarks", list);
+  if (facts.trimmed == 0) return;
+  report.say("\n  trims            " + std::to_string(facts.trimmed) + " of " + counted(model.surfaces.size(), "face") +
+             ", " + counted(facts.loops, "loop") + (count > 0 ? ", " + counted(count, "remark") + ":" : ""));
+  for (std::size_t k = 0; k < std::min(limit, count); ++k) {
+    const SurfaceRemark& remark = facts.remarks[k];
+    const std::string& name = *model.surfaces[remark.surface].name;
+    report.say("\n    surface " + std::to_string(remark.surface) + (name.empty() ? "" : " (" + name + ")") + ": " +
+               remark.text);
+  }
+  if (count > limit) report.say("\n    and " + std::to_string(count - limit) + " more");
 }
 
 }  // namespace tessera::cli

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "console/json.h"
 #include "stages/load.h"
 #include "tessera/trim_loop.h"
 
@@ -29,8 +28,7 @@ struct TrimFacts {
 /// Repairs the loops of all surfaces, whose patches must be loaded, and gathers the remarks.
 TrimFacts find_trims(const Loaded& loaded);
 
-/// Lines of `info`; empty if no surface is trimmed.
-std::string trims_lines(const TrimFacts& facts, const Loaded& loaded);
-Json remarks_json(const TrimFacts& facts);
+/// Adds the facts of `info`; in words only if a surface is trimmed.
+void add_trims(Report& report, const TrimFacts& facts, const Model& model);
 
 }  // namespace tessera::cli

@@ -42,8 +42,4 @@ Status with_threads(int threads, const std::function<Status()>& work) {
   return status;
 }
 
-void add_seconds(Json& object, const CommonOptions& options, const Timings& timings) {
-  if (options.timings) object["seconds"] = timings.as_json();
-}
-
 }  // namespace tessera::cli

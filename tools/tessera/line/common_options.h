@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "console/timings.h"
 #include "line/command_line.h"
 #include "tessera/status.h"
 
@@ -40,8 +39,5 @@ void add_common(Command& command, CommonOptions& options);
 
 /// Runs `work` in an arena of `threads` threads.
 Status with_threads(int threads, const std::function<Status()>& work);
-
-/// Adds {"seconds": ...} if --timings is set.
-void add_seconds(Json& object, const CommonOptions& options, const Timings& timings);
 
 }  // namespace tessera::cli

@@ -39,16 +39,15 @@ double largest(const render::MeshDistance& mesh, const PatchSet& set) {
 
 }  // namespace
 
-std::string MeshError::text() const {
-  return std::to_string(triangles) + " triangles, up to " + readable(found, 3) + " from the surfaces; red is " +
-         readable(red, 3) + (proven ? ", the proven bound\n" : "\n");
+void MeshError::add_to(Report& report) const {
+  report.add("error", {{"triangles", triangles}, {"found", found}, {"red", red}, {"proven", proven}},
+             "\n" + std::to_string(triangles) + " triangles, up to " + readable(found, 3) +
+                 " from the surfaces; red is " + readable(red, 3) + (proven ? ", the proven bound" : ""));
 }
 
 std::string MeshError::caption() const {
   return "red: " + readable(red, 3) + ", mesh: " + std::to_string(triangles) + " triangles";
 }
-
-Json MeshError::json() const { return {{"triangles", triangles}, {"found", found}, {"red", red}, {"proven", proven}}; }
 
 void add_error_options(Command& command, MeshErrorOptions& options, const Option& shade) {
   const Option& mesh =

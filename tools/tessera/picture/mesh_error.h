@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "console/console.h"
+#include "console/report.h"
 #include "line/command_line.h"
 #include "render/mesh_distance.h"
 #include "render/render.h"
@@ -26,10 +26,8 @@ struct MeshError {
 
   /// For render::Settings::error.
   double share(const Vec3& point) const { return mesh->distance(point, 4 * red) / red; }
-  /// Text for people: a sentence, and the caption of the picture.
-  std::string text() const;
-  std::string caption() const;
-  Json json() const;
+  void add_to(Report& report) const;
+  std::string caption() const;  ///< of the picture
 };
 
 /// Adds --mesh and --relative, which need --shade error. The check throws UsageError if that is missing.

@@ -45,26 +45,19 @@ Status write_ray_hits(const Job& job, const RaycastOptions& options, const Commo
     if (Status status = out.commit(); !status.ok()) return status;
   }
   const bool exact = options.mode == RayMode::exact;
-  if (!common.json) {
-    return print_report(job.output, job.output + ": " + counted(counts.rays, "ray") + ", " +
-                                        counted(counts.hits, "hit") +
-                                        (options.all_hits ? ", " + counted(counts.points, "point") : "") + ", " +
-                                        (exact ? std::to_string(counts.uncertified) + " of them uncertified\n"
-                                               : std::to_string(counts.unrefined) + " of them on facets only\n"));
-  }
-  Json object = files_json(scene.loaded);
-  object["output"] = job.output;
-  object["mode"] = name_of(options.mode);
-  object["rays"] = counts.rays;
-  object["hits"] = counts.hits;
-  object["points"] = counts.points;
-  object["unrefined"] = counts.unrefined;
-  object["uncertified"] = counts.uncertified;
-  object["incomplete"] = counts.incomplete;
-  object["seam"] = counts.seam;
-  add_model_facts(object, scene.loaded, scene.patch_count(), scene.set.fit_error());
-  add_seconds(object, common, timings);
-  return print_report(job.output, object.text() + "\n");
+  Report report = report_of(job, scene.loaded);
+  report.add("mode", name_of(options.mode));
+  report.add("rays", counts.rays, counted(counts.rays, "ray"));
+  report.add("hits", counts.hits, ", " + counted(counts.hits, "hit"));
+  report.add("points", counts.points, options.all_hits ? ", " + counted(counts.points, "point") : "");
+  report.add("unrefined", counts.unrefined,
+             exact ? "" : ", " + std::to_string(counts.unrefined) + " of them on facets only");
+  report.add("uncertified", counts.uncertified,
+             exact ? ", " + std::to_string(counts.uncertified) + " of them uncertified" : "");
+  report.add("incomplete", counts.incomplete);
+  report.add("seam", counts.seam);
+  add_model_facts(report, scene.loaded, scene.patch_count(), scene.set.fit_error());
+  return report.print(job.output, common, timings);
 }
 
 }  // namespace tessera::cli

@@ -87,23 +87,17 @@ Status draw_file(const Job& job, const RaycastOptions& options, const CommonOpti
   const Status written = numbers ? write_numbers(job, options, settings, scene, out, timings)
                                  : write_colours(job, options, settings, scene, out, timings);
   if (!written.ok()) return written;
-  if (!common.json) {
-    return print_report(job.output, job.output + ": " + std::to_string(settings.width) + " x " +
-                                        std::to_string(settings.height) + ", " + scene.counted_parts() + "\n" +
-                                        (scene.error ? scene.error->text() : "") + fit_line(scene.set));
-  }
-  Json object = files_json(scene.loaded);
-  object["output"] = job.output;
-  object["width"] = settings.width;
-  object["height"] = settings.height;
-  object["mode"] = name_of(options.mode);
-  object["triangles"] = scene.meshes ? Json(scene.meshes->triangle_count()) : Json();
   const std::vector<std::string> captions = scene.captions();
-  object["caption"] = numbers || captions.empty() ? "" : captions.front();
-  if (scene.error) object["error"] = scene.error->json();
-  add_model_facts(object, scene.loaded, scene.patch_count(), scene.set.fit_error());
-  add_seconds(object, common, timings);
-  return print_report(job.output, object.text() + "\n");
+  Report report = report_of(job, scene.loaded);
+  report.add("width", settings.width, std::to_string(settings.width));
+  report.add("height", settings.height, " x " + std::to_string(settings.height) + ", " + scene.counted_parts());
+  report.add("mode", name_of(options.mode));
+  report.add("triangles", scene.meshes ? Json(scene.meshes->triangle_count()) : Json());
+  report.add("caption", numbers || captions.empty() ? "" : captions.front());
+  if (scene.error) scene.error->add_to(report);
+  add_model_facts(report, scene.loaded, scene.patch_count(), scene.set.fit_error());
+  report.say(fit_line(scene.set.fit_error()));
+  return report.print(job.output, common, timings);
 }
 
 Status draw_characters(const RaycastOptions& options, const RaycastScene& scene, OutputFile& out, Timings& timings) {

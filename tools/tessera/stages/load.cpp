@@ -253,29 +253,23 @@ Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t
   return with_places(loaded, first_surface, make_patch_set(used, packing, fit));
 }
 
-Json files_json(const Loaded& loaded) {
+Report report_of(const Job& job, const Loaded& loaded) {
   Json failed = Json::array();
-  for (const auto& [file, status] : loaded.failed) {
+  for (const auto& [file, status] : loaded.failed)
     failed.push_back({{"file", file}, {"code", std::string(name(status.code()))}, {"message", status.message()}});
-  }
-  return {{"models", loaded.files}, {"failed", failed}};
+  Report report;
+  report.add("models", loaded.files);
+  report.add("failed", failed);
+  report.add("output", job.output, job.output + ": ");
+  return report;
 }
 
-void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set) {
-  add_model_facts(object, loaded, set.patch_count(), set.fit_error());
-}
-void add_model_facts(Json& object, const Loaded& loaded, std::size_t patches, const FitError& error) {
-  object["surfaces"] = loaded.model.surfaces.size();
-  object["patches"] = patches;
-  object["trimmed_surfaces"] = loaded.trimmed();
-  object["fit_error"] = fit_json(error);
-  object["warnings"] = warnings_json(loaded.model);
-}
-
-Json warnings_json(const Model& model) {
-  Json warnings = Json::array();
-  for (const std::string& warning : model.warnings) warnings.push_back(warning);
-  return warnings;
+void add_model_facts(Report& report, const Loaded& loaded, std::size_t patches, const FitError& error) {
+  report.add("surfaces", loaded.model.surfaces.size());
+  report.add("patches", patches);
+  report.add("trimmed_surfaces", loaded.trimmed());
+  report.add("fit_error", fit_json(error));
+  report.add("warnings", loaded.model.warnings);
 }
 
 std::string trims_text(std::size_t trimmed) {
@@ -283,14 +277,11 @@ std::string trims_text(std::size_t trimmed) {
   return std::to_string(trimmed) + (trimmed == 1 ? " surface is trimmed" : " surfaces are trimmed");
 }
 
-std::string fit_line(const PatchSet& set) { return fit_line(set.fit_error()); }
 std::string fit_line(const FitError& error) {
   if (error.distance == 0 && error.certified) return {};
-  return "  functions fitted to within " + readable(error.distance, 3) +
-         (error.certified ? ", proven\n" : ", sampled\n");
+  return "\n  functions fitted to within " + readable(error.distance, 3) + (error.certified ? ", proven" : ", sampled");
 }
 
-Json fit_json(const PatchSet& set) { return fit_json(set.fit_error()); }
 Json fit_json(const FitError& error) { return {{"distance", error.distance}, {"certified", error.certified}}; }
 
 }  // namespace tessera::cli

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "batch/jobs.h"
+#include "console/report.h"
 #include "tessera/model.h"
 
 namespace tessera::cli {
@@ -72,20 +73,16 @@ Result<PatchSet> pack_faces(const Loaded& loaded, const ModelOptions& options, T
 Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
                             const ModelOptions& options, Timings& timings);
 
-/// The beginning of every job's JSON report: the files, and the files that failed.
-Json files_json(const Loaded& loaded);
-/// Adds the end of the report: the number of trimmed surfaces, the fit error, warnings.
-void add_model_facts(Json& object, const Loaded& loaded, const PatchSet& set);
-void add_model_facts(Json& object, const Loaded& loaded, std::size_t patches, const FitError& error);
-Json warnings_json(const Model& model);
+/// Begins the report of a job with the files, the files that failed, and the output.
+Report report_of(const Job& job, const Loaded& loaded);
+/// Adds the end of a report: the number of surfaces and patches, the fit error, warnings. All have no words.
+void add_model_facts(Report& report, const Loaded& loaded, std::size_t patches, const FitError& error);
 
 /// "12 surfaces are trimmed", or an empty text.
 std::string trims_text(std::size_t trimmed);
 
-/// A sentence with the error of fitted callables; empty if all is exact.
+/// A line with the error of fitted callables, begun by the end of the line before; empty if all is exact.
 std::string fit_line(const FitError& error);
-std::string fit_line(const PatchSet& set);
 Json fit_json(const FitError& error);
-Json fit_json(const PatchSet& set);
 
 }  // namespace tessera::cli
