@@ -8,9 +8,8 @@
 
 #include "commands/commands.h"
 #include "console/output.h"
-#include "facts/topology.h"
-#include "stages/load.h"
-#include "stages/mesh.h"
+#include "console/report.h"
+#include "stages/write.h"
 #include "tessera/io.h"
 #include "tessera/part_mesh.h"
 #include "tessera/surface_file.h"
@@ -20,10 +19,8 @@
 namespace tessera::cli {
 namespace {
 
-constexpr double default_share = 1e-3;
-
 /// Names the edges that faces share: those that the file states, and those that run side by side.
-Status join_faces(Model& model, const ModelOptions& options) {
+Status join_faces(Model& model, const PackOptions& options) {
   if (options.untrimmed)
     for (ModelSurface& surface : model.surfaces) surface.trims = {};
   const auto is_trimmed = [](const ModelSurface& surface) { return !surface.trims->empty(); };
@@ -49,13 +46,13 @@ Status join_faces(Model& model, const ModelOptions& options) {
 /// Takes this rank's part of a model that each rank reads whole.
 Result<ModelPart> part_of_whole(const Job& job, const TessellateOptions& options, Timings& timings,
                                 const Transport& transport) {
-  Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
+  Result<Loaded> loaded = load(job, options.load, With::surfaces, timings);
   if (!loaded) return loaded.status();
-  if (Status status = join_faces(loaded->model, options.models); !status.ok()) return status;
-  const Result<SurfaceExtents> extents = surface_extents(loaded->model, options.models.fit);
+  if (Status status = join_faces(loaded->model, options.pack); !status.ok()) return status;
+  const Result<SurfaceExtents> extents = surface_extents(loaded->model, options.load.fit);
   if (!extents) return extents.status();
   const PartRun run = run_of_part(loaded->model.surfaces.size(), transport.part(), transport.part_count());
-  return part_of(loaded->model, *extents, run.begin, run.end, part_reach(options.certified, extents->box()));
+  return part_of(loaded->model, *extents, run.begin, run.end, part_reach(options.mesh.certified, extents->box()));
 }
 
 /// Reads this rank's part of a file of patches, and what is around it. Every rank returns at the same stage.
@@ -66,7 +63,7 @@ Result<ModelPart> part_of_file(const Job& job, const TessellateOptions& options,
                                return file->read(static_cast<std::size_t>(first), static_cast<std::size_t>(end));
                              }};
   const PartRun run = run_of_part(source.count, transport.part(), transport.part_count());
-  const Result<PartOutline> outline = find_part(source, run, options.certified, transport, options.models.fit);
+  const Result<PartOutline> outline = find_part(source, run, options.mesh.certified, transport, options.load.fit);
   if (!outline) return outline.status();
   return load_part(source, *outline);
 }
@@ -140,16 +137,16 @@ Status compare_instruction_sets(const std::string& output, MpiTeam& team) {
 Status mesh_together(const Job& job, const TessellateOptions& options, const CommonOptions& common, MpiTeam& team,
                      Timings& timings) {
   Transport& transport = team.transport();
-  Result<OutputFile> out = open_output(is_ply(job.output) ? job.output : "/dev/null", &team);
+  Result<OutputFile> out = open_output(is_ply(job.output) ? job.output : "/dev/null", team.leads());
   if (Status status = transport.agree(out.status()); !status.ok()) return status;
   if (Status status = compare_instruction_sets(job.output, team); !status.ok()) return status;
   Result<ModelPart> part = reads_runs(job.inputs[0]) ? part_of_file(job, options, transport)
                                                      : part_of_whole(job, options, timings, transport);
   if (Status status = transport.agree(part.status()); !status.ok()) return status;
-  const FilePlan plan = plan_for_file(options, part->box, job.output);
+  const FilePlan plan = plan_for_file(options.mesh, part->box, job.output);
   Result<PartMesh> own = [&] {
     const auto phase = timings.phase("mesh");
-    return tessellate_part(*part, plan.options, {}, options.models.fit);
+    return tessellate_part(*part, plan.options, {}, options.load.fit);
   }();
   if (own && plan.has_double_sums) add_double_sums(own->mesh);
   Result<PartSums> sums = sum_parts(own, plan.options, transport);
@@ -171,7 +168,7 @@ std::string fault_of_place(const std::string& path) {
 }
 
 /// Throws UsageError if an option decides for the whole mesh.
-void check_local(const TessellateOptions& options) {
+void check_local(const MeshOptions& options) {
   const TessellationOptions& mesh = options.certified;
   const auto refuse = [](const char* option) {
     throw UsageError(option, "decides for the whole mesh, of which each rank has a part: use tessera tessellate");
@@ -187,18 +184,18 @@ void check_local(const TessellateOptions& options) {
 void add_tessellate_by_ranks(Command& tool, Session& session, MpiTeam& team) {
   Command& command = tool.add_command("tessellate", "Turn a model into a mesh, each rank a part of it");
   const auto options = std::make_shared<TessellateOptions>();
-  add_models(command, options->models);
+  add_models(command, options->load);
   command
       .add_text("-o,--output", "FILE",
                 "The mesh: .ply, one file; or .pvtp, an index that viewers open, with a file .vtp for each rank",
-                options->output)
+                options->write.output)
       .require()
       .check(fault_of_place);
-  const std::vector<const Option*> density = add_density(command, *options);
-  add_mesh_options(command, *options);
-  add_reading(command, options->models);
-  add_untrimmed(command, options->models);
-  add_view(command, *options);
+  const std::vector<const Option*> density = add_density(command, options->mesh);
+  add_mesh_options(command, options->mesh);
+  add_reading(command, options->load);
+  add_untrimmed(command, options->pack);
+  add_view(command, options->mesh);
   add_common(command, session.common);
   command.footer =
       "The mesh is the same for any number of ranks, byte for byte, on one instruction set. Ranks read runs of a .bpt\n"
@@ -209,13 +206,12 @@ void add_tessellate_by_ranks(Command& tool, Session& session, MpiTeam& team) {
       "  mpirun -n 4 tessera_mpi tessellate sheet.bpt -o sheet.ply --tolerance 0.01\n"
       "  mpirun -n 4 tessera_mpi tessellate part.step -o part.pvtp --relative 1e-4";
   command.choose = [options, &session, &team, density] {
-    check_input_of_team(options->models);
-    if (options->models.files.size() != 1) throw UsageError("MODEL", "expected one file");
-    const bool is_default = std::ranges::none_of(density, [](const Option* option) { return option->count > 0; });
-    if (is_default) options->certified.relative = true, options->certified.tolerance = default_share;
-    check_local(*options);
-    options->certified = plan_options(*options);
-    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", ".ply"});
+    check_input_of_team(options->load);
+    if (options->load.files.size() != 1) throw UsageError("MODEL", "expected one file");
+    set_default(density, options->mesh);
+    check_local(options->mesh);
+    options->mesh.certified = plan_options(options->mesh);
+    const Plan plan = plan_jobs(options->load.files, options->write.output, {"--output", ".ply"});
     session.command = [options, plan, &session, &team] {
       return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
         return mesh_together(job, *options, session.common, team, timings);

@@ -38,7 +38,8 @@ Report report_of(const std::string& mesh, const MeshReport& found) {
   return report;
 }
 
-Status run_check(const std::string& file, const CheckOptions& options, const CommonOptions& common, Timings& timings) {
+Status run_check(const Job& job, const CheckOptions& options, const CommonOptions& common, Timings& timings) {
+  const std::string& file = job.inputs[0];
   std::vector<std::string> warnings;
   const Result<Mesh> mesh = [&] {
     const auto phase = timings.phase("read");
@@ -83,11 +84,7 @@ void add_check(Command& tool, Session& session) {
   add_common(command, session.common);
   command.footer = check_footer;
   command.choose = [options, &session] {
-    session.command = [options, &session, plan = plan_jobs(options->meshes, "", {"MESH", "", false})] {
-      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
-        return run_check(job.inputs[0], *options, session.common, timings);
-      });
-    };
+    session.choose(plan_jobs(options->meshes, "", {"MESH", "", false}), options, run_check);
   };
 }
 

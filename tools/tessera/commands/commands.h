@@ -2,11 +2,11 @@
 // The commands of the tool. Each adds its options to the command line, and itself to the session if it is chosen.
 
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "batch/jobs.h"
 #include "line/command_line.h"
-#include "line/common_options.h"
-#include "tessera/status.h"
 
 namespace tessera::cli {
 
@@ -17,6 +17,16 @@ struct Session {
   std::function<Status()> command;
   CommonOptions common;
   Team* team = nullptr;  ///< null: this process alone
+
+  /// Chooses `work` on each job of a plan.
+  template <class Options>
+  void choose(const Plan& plan, const std::shared_ptr<Options>& options,
+              Status (*work)(const Job&, const Options&, const CommonOptions&, Timings&)) {
+    command = [=, this] {
+      return run_jobs(plan, common,
+                      [&](const Job& job, Timings& timings) { return work(job, *options, common, timings); });
+    };
+  }
 };
 
 /// The text of `tessera --version`: the version, the formats that are read and written, and the CAD reader's place.

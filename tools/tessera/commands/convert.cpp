@@ -7,15 +7,15 @@
 #include "console/console.h"
 #include "console/output.h"
 #include "line/arguments.h"
-#include "stages/load.h"
+#include "stages/write.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {
 namespace {
 
 struct ConvertOptions {
-  ModelOptions models;
-  std::string output, format;
+  LoadOptions load;
+  WriteOptions write;
 };
 
 Status report(const Job& job, const CommonOptions& common, const Loaded& loaded, const WrittenModel& written,
@@ -33,11 +33,11 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
 Status run_convert(const Job& job, const ConvertOptions& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
-  const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
+  const Result<Loaded> loaded = load(job, options.load, With::surfaces, timings);
   if (!loaded) return loaded.status();
   const Result<WrittenModel> written = [&] {
     const auto phase = timings.phase("write");
-    return write_model(loaded->model, format_path(job.output, options.format), options.models.fit, *out);
+    return write_model(loaded->model, format_path(job.output, options.write.format), options.load.fit, *out);
   }();
   if (!written) return written.status();
   if (Status status = out->commit(); !status.ok()) return status;
@@ -66,29 +66,25 @@ constexpr const char* convert_footer =
 void add_convert(Command& tool, Session& session) {
   Command& command = tool.add_command("convert", "Write surfaces as Bezier patches in another format");
   const auto options = std::make_shared<ConvertOptions>();
-  add_models(command, options->models);
+  add_models(command, options->load);
   command
       .add_text("-o,--output", "FILE",
                 "The file of surfaces (.bpt, .json, .obj), a folder, a name with {name}, or - for standard output",
-                options->output)
+                options->write.output)
       .require()
       .check(fault_of_model_file);
-  add_stream_format(command, {"bpt", "json", "obj"}, options->format);
-  add_reading(command, options->models);
+  add_stream_format(command, {"bpt", "json", "obj"}, options->write.format);
+  add_reading(command, options->load);
   add_batch(command, session.common.batch);
   add_common(command, session.common);
   command.footer = convert_footer;
   command.choose = [options, &session] {
-    const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
-    check_input(options->models);
-    check_stream_format(options->output, options->format);
-    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", model_extension}, listed);
+    const std::vector<std::string> listed = listed_files(session.common.batch, options->load.files);
+    check_input(options->load);
+    check_stream_format(options->write.output, options->write.format);
+    const Plan plan = plan_jobs(options->load.files, options->write.output, {"--output", model_extension}, listed);
     check_batch(session.common.batch, plan);
-    session.command = [options, plan, &session] {
-      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
-        return run_convert(job, *options, session.common, timings);
-      });
-    };
+    session.choose(plan, options, run_convert);
   };
 }
 

@@ -22,7 +22,7 @@ namespace tessera::cli {
 namespace {
 
 struct EvalOptions {
-  ModelOptions models;
+  LoadOptions load;
   std::string output, places, format = "csv";
   std::optional<Extent> grid;
   int derivatives = 0;
@@ -238,7 +238,7 @@ bool writes_json(const Job& job, const EvalOptions& options, const CommonOptions
 Status write_rows_of_team(const Loaded& loaded, const Places& places, const EvalOptions& options, bool json,
                           OutputFile& out) {
   constexpr std::size_t places_at_once = std::size_t{1} << 20;
-  Evaluator evaluator(loaded.model, options.models.fit);
+  Evaluator evaluator(loaded.model, options.load.fit);
   Progress progress("evaluating");
   TextBuffer buffer;
   for (std::size_t first = 0; first < places.count; first += places_at_once) {
@@ -256,7 +256,7 @@ Status write_rows_of_team(const Loaded& loaded, const Places& places, const Eval
 Status write_all_rows(const Loaded& loaded, const Places& places, const EvalOptions& options, bool json,
                       OutputFile& out) {
   if (options.team) return write_rows_of_team(loaded, places, options, json, out);
-  Evaluator evaluator(loaded.model, options.models.fit);
+  Evaluator evaluator(loaded.model, options.load.fit);
   Progress progress("evaluating");
   RowWriter<OutputFile> rows(out, json, options.derivatives);
   return write_rows(loaded, places, {0, places.count}, evaluator, rows, out, progress);
@@ -281,9 +281,9 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
 }
 
 Status eval_job(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
-  Result<OutputFile> out = open_output(job.output, options.team);
+  Result<OutputFile> out = open_output(job.output, !options.team || options.team->leads());
   if (!out) return out.status();
-  const Result<Loaded> loaded = load(job, options.models, With::surfaces, timings);
+  const Result<Loaded> loaded = load(job, options.load, With::surfaces, timings);
   if (!loaded) return loaded.status();
   const Result<Places> places = places_of(options, loaded->model);
   if (!places) return places.status();
@@ -340,7 +340,7 @@ void add_eval(Command& tool, Session& session) {
   Command& command = tool.add_command("eval", "Evaluate surfaces: positions, derivatives, normals");
   const auto options = std::make_shared<EvalOptions>();
   options->team = session.team;
-  add_models(command, options->models);
+  add_models(command, options->load);
   command
       .add_text("-o,--output", "FILE", "The file to write, a folder, or a name with {name} [standard output]",
                 options->output)
@@ -351,20 +351,16 @@ void add_eval(Command& tool, Session& session) {
                     [options](std::size_t order) { options->derivatives = static_cast<int>(order); });
   command.add_choice("--format", {"csv", "json"}, "Format of the rows [csv]",
                      [options](const std::string& name) { options->format = name; });
-  add_reading(command, options->models);
+  add_reading(command, options->load);
   add_common(command, session.common);
   command.footer = eval_footer;
   command.choose = [options, &session] {
-    check_input(options->models);
-    if (options->team) check_input_of_team(options->models);
+    check_input(options->load);
+    if (options->team) check_input_of_team(options->load);
     const std::string extension = "." + options->format;
-    const Plan plan = plan_jobs(options->models.files, options->output, {"--output", extension});
+    const Plan plan = plan_jobs(options->load.files, options->output, {"--output", extension});
     check_overwriting("--output", plan.outputs(), {options->places});
-    session.command = [options, plan, &session] {
-      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
-        return run_eval(job, *options, session.common, timings);
-      });
-    };
+    session.choose(plan, options, run_eval);
   };
 }
 

@@ -10,14 +10,14 @@
 #include "facts/topology.h"
 #include "facts/trims.h"
 #include "line/arguments.h"
-#include "stages/load.h"
+#include "stages/pack.h"
 #include "tessera/execution.h"
 
 namespace tessera::cli {
 namespace {
 
 struct InfoOptions {
-  ModelOptions models;
+  LoadOptions load;
   std::size_t max_joins = 20000;
 };
 
@@ -132,11 +132,9 @@ Report report_of(const Findings& found) {
 }
 
 Status run_info(const Job& job, const InfoOptions& options, const CommonOptions& common, Timings& timings) {
-  const Result<Loaded> loaded = load(job, options.models, With::patches, timings);
+  const Result<Loaded> loaded = load(job, options.load, With::patches, timings);
   if (!loaded) return loaded.status();
-  ModelOptions whole = options.models;
-  whole.untrimmed = true;
-  const Result<PatchSet> set = pack(*loaded, whole, timings);
+  const Result<PatchSet> set = pack(*loaded, {.untrimmed = true}, timings);
   if (!set) return set.status();
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();
@@ -192,22 +190,18 @@ constexpr const char* info_footer =
 void add_info(Command& tool, Session& session) {
   Command& command = tool.add_command("info", "Describe models: surfaces, joins, sizes, memory");
   const auto options = std::make_shared<InfoOptions>();
-  add_models(command, options->models);
+  add_models(command, options->load);
   command.add_count("--joins", "COUNT", "Measure at most this many joins; 0 leaves them out [20000]", 0, 1'000'000'000,
                     [options](std::size_t count) { options->max_joins = count; });
-  add_reading(command, options->models);
+  add_reading(command, options->load);
   add_batch(command, session.common.batch);
   add_common(command, session.common);
   command.footer = info_footer;
   command.choose = [options, &session] {
-    const std::vector<std::string> listed = listed_files(session.common.batch, options->models.files);
-    check_input(options->models);
-    const Plan plan = plan_jobs(options->models.files, "", {"MODEL", "", false}, listed);
-    session.command = [options, plan, &session] {
-      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
-        return run_info(job, *options, session.common, timings);
-      });
-    };
+    const std::vector<std::string> listed = listed_files(session.common.batch, options->load.files);
+    check_input(options->load);
+    const Plan plan = plan_jobs(options->load.files, "", {"MODEL", "", false}, listed);
+    session.choose(plan, options, run_info);
   };
 }
 

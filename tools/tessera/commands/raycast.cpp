@@ -19,7 +19,7 @@ namespace tessera::cli {
 namespace {
 
 Status cast_job(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
-  Result<OutputFile> out = open_output(job.output, options.team);
+  Result<OutputFile> out = open_output(job.output, options.writes());
   if (!out) return out.status();
   std::vector<Ray> rays;
   if (!options.rays.empty()) {
@@ -136,7 +136,7 @@ void add_ray_options(Command& command, RaycastOptions& options, const std::vecto
 
 Plan plan_raycast(const RaycastOptions& options, const CommonOptions& common) {
   if (!options.rays.empty()) {
-    Plan plan = plan_jobs(options.models.files, options.hits, {"--hits", ".csv"});
+    Plan plan = plan_jobs(options.load.files, options.hits, {"--hits", ".csv"});
     check_overwriting("--hits", plan.outputs(), {options.rays});
     return plan;
   }
@@ -147,7 +147,7 @@ Plan plan_raycast(const RaycastOptions& options, const CommonOptions& common) {
                      "expected -o FILE, or --rays FILE.csv and --hits FILE.csv" +
                          std::string(common.json ? "" : ", or --terminal, as standard output is no terminal"));
   }
-  return plan_jobs(options.models.files, options.picture, {"--output", picture_extension, false});
+  return plan_jobs(options.load.files, options.picture, {"--output", picture_extension, false});
 }
 
 void add_mode(Command& command, RaycastOptions& options) {
@@ -171,7 +171,7 @@ void add_team_options(Command& command, RaycastOptions& options) {
 
 /// Rules for ranks that work together.
 void check_team(const RaycastOptions& options) {
-  check_input_of_team(options.models);
+  check_input_of_team(options.load);
   if (!options.data_parallel) return;
   if (options.rays.empty() && !is_exr(format_path(options.picture, options.format)))
     throw UsageError("--data-parallel", "needs --rays FILE.csv, or a picture as .exr");
@@ -198,28 +198,24 @@ void add_raycast(Command& tool, Session& session) {
   Command& command = tool.add_command("raycast", "Draw pictures with rays, or find the hits of your own rays");
   const auto options = std::make_shared<RaycastOptions>();
   options->team = session.team;
-  add_models(command, options->models);
+  add_models(command, options->load);
   const std::vector<const Option*> of_pictures = add_picture_options(command, *options);
   add_stream_format(command, {"png", "exr"}, options->format);
   add_error_options(command, options->error, command.option("--shade"));
   add_ray_options(command, *options, of_pictures);
   add_mode(command, *options);
   if (session.team) add_team_options(command, *options);
-  add_reading(command, options->models);
-  add_untrimmed(command, options->models);
+  add_reading(command, options->load);
+  add_untrimmed(command, options->pack);
   add_common(command, session.common);
   command.footer = raycast_footer;
   command.choose = [options, &command, &session] {
-    check_input(options->models);
+    check_input(options->load);
     check_options(command, *options);
     if (options->team) check_team(*options);
     if (auto& camera = options->settings.camera) camera->up = render::from_z_up({0, 0, 1}, options->settings.up);
     const Plan plan = plan_raycast(*options, session.common);
-    session.command = [options, plan, &session] {
-      return run_jobs(plan, session.common, [&](const Job& job, Timings& timings) {
-        return run_raycast(job, *options, session.common, timings);
-      });
-    };
+    session.choose(plan, options, run_raycast);
   };
 }
 

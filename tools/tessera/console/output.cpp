@@ -4,7 +4,6 @@
 #include <system_error>
 #include <vector>
 
-#include "batch/team.h"
 #include "console/console.h"
 
 namespace tessera::cli {
@@ -29,8 +28,8 @@ Status make_folders(const fs::path& folder) {
 
 }  // namespace
 
-Result<OutputFile> open_output(const std::string& path, const Team* team) {
-  if (team && !team->leads()) return OutputFile::make("/dev/null");
+Result<OutputFile> open_output(const std::string& path, bool writes) {
+  if (!writes) return OutputFile::make("/dev/null");
   if (path.empty() || is_stream(path)) return OutputFile::standard_output(&interrupted());
   if (Status status = make_folders(fs::path(path).parent_path()); !status.ok())
     return Status(status.code(), path + ": cannot be written: " + status.message());

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "tessera/edge_matching.h"
+#include "stages/pack.h"
 #include "tessera/topology.h"
 
 namespace tessera::cli {
@@ -41,20 +41,6 @@ Status add_gaps(const Model& model, std::size_t k, TopologyFacts& facts) {
     facts.gap_edge = edge;
   }
   return {};
-}
-
-/// Whether some edge has one face, or a face names no edges.
-Result<bool> has_free_edges(const Shape& shape) {
-  const Result<EdgeUses> uses = edge_uses(shape);
-  if (!uses) return uses.status();
-  for (std::size_t k = 0; k < shape.edges.size(); ++k)
-    if ((*uses)[k].size() == 1 && !shape.edges[k].degenerate) return true;
-  for (const ShapeFace& face : shape.faces) {
-    const std::vector<TrimLoop>& loops = edge_loops(face);
-    const auto is_nameless = [](const TrimLoop& loop) { return loop.coedges.empty(); };
-    if (loops.empty() || std::any_of(loops.begin(), loops.end(), is_nameless)) return true;
-  }
-  return false;
 }
 
 /// The shapes of a model; its surfaces as one if it has none.
@@ -104,19 +90,6 @@ Result<TopologyFacts> count_topology(const Model& model) {
     if (Status status = add_gaps(model, k, facts); !status.ok()) return status;
   }
   return facts;
-}
-
-Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape) {
-  if (shape.faces.size() > max_joined_faces) return std::optional<JoinedShape>();
-  const Result<bool> is_open = has_free_edges(shape);
-  if (!is_open) return is_open.status();
-  if (!*is_open) return std::optional<JoinedShape>();
-  const Result<double> distance = joining_distance(shape);
-  if (!distance) return distance.status();
-  if (!(*distance > 0)) return std::optional<JoinedShape>();
-  Result<Shape> made = joined_edges(shape, *distance);
-  if (!made) return made.status();
-  return std::optional<JoinedShape>({*std::move(made), *distance});
 }
 
 Result<std::optional<JoinedFacts>> count_joined(const Model& model) {

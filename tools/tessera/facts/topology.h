@@ -30,19 +30,8 @@ struct JoinedFacts {
   TopologyFacts topology;
   double distance = 0;  ///< within which they are joined, the largest of all shapes
 };
-inline constexpr std::size_t max_joined_faces = 20000;
 
-/// A shape whose edges joined_edges() has joined within a distance.
-struct JoinedShape {
-  Shape shape;
-  double distance = 0;
-};
-/// Joins the edges of a shape within joining_distance(). Empty where nothing is to be joined, see count_joined(). Errors:
-/// those of joined_edges().
-Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape);
-
-/// Joins edges within joining_distance() and counts. Empty where nothing is to be joined: all edges have two faces, or
-/// there are more than max_joined_faces. Errors: those of joined_edges().
+/// Joins edges as joined_if_free() and counts. Empty where nothing is to be joined. Errors: those of joined_edges().
 Result<std::optional<JoinedFacts>> count_joined(const Model& model);
 
 /// Adds the facts of `info`; in words only if the model has shapes.

@@ -10,13 +10,14 @@
 #include "render/mesh_distance.h"
 #include "render/mesh_patches.h"
 #include "render/render.h"
-#include "stages/load.h"
+#include "stages/pack.h"
 #include "tessera/ray_scene.h"
 
 namespace tessera::cli {
 
 struct RaycastOptions {
-  ModelOptions models;
+  LoadOptions load;
+  PackOptions pack;
   std::string picture, format, rays, hits, colour = "auto";
   bool terminal = false;
   bool sized = false;   ///< whether --size is on the command line

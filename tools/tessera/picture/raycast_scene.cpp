@@ -194,9 +194,9 @@ Result<RaycastScene> make_part_scene(Loaded loaded, const PatchSet& whole, const
 }
 
 Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& options, Timings& timings) {
-  Result<Loaded> loaded = load(job, options.models, With::patches, timings);
+  Result<Loaded> loaded = load(job, options.load, With::patches, timings);
   if (!loaded) return loaded.status();
-  Result<PatchSet> set = pack(*loaded, options.models, timings);
+  Result<PatchSet> set = pack(*loaded, options.pack, timings);
   if (!set) return set.status();
   if (options.data_parallel) return make_part_scene(*std::move(loaded), *set, options, timings);
   if (options.edges && shows_shape(job, options)) return make_drawn_scene(*std::move(loaded), *set, options, timings);
@@ -245,7 +245,8 @@ std::vector<std::string> RaycastScene::captions() const {
 
 std::string RaycastScene::surfaces_caption() const {
   const std::string mesh = "drawn by a mesh within " + readable(mesh_bound, 2) + " of ";
-  if (mesh_bound > 0 && keeps_trims) return trims_text(loaded.trimmed()) + ": " + mesh + "what is kept";
+  if (mesh_bound > 0 && keeps_trims)
+    return counted(loaded.trimmed(), "surface is", "surfaces are") + " trimmed: " + mesh + "what is kept";
   if (mesh_bound > 0) return mesh + "the surfaces";
   return {};
 }

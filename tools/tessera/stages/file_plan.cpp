@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "stages/mesh.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {
@@ -37,7 +36,7 @@ double room_beside(double limit, double rounding) { return limit > 2 * rounding 
 
 }  // namespace
 
-FilePlan plan_for_file(const TessellateOptions& options, const Box3& box, const std::string& path, double moved) {
+FilePlan plan_for_file(const MeshOptions& options, const Box3& box, const std::string& path, double moved) {
   FilePlan plan{.options = plan_options(options), .tolerance = std::numeric_limits<double>::infinity()};
   TessellationOptions& wanted = plan.options;
   if (wanted.rates || box.empty()) return plan;

@@ -22,7 +22,7 @@ struct FilePlan {
 /// Far from zero, where floats of the file would take more than a sixteenth of the tolerance, .obj, .ply and .pvtp get
 /// positions in double, unless the user has chosen. All others get a mesh within the tolerance without the rounding, if the rounding
 /// leaves half of it; otherwise the bound of the file is larger than the tolerance.
-FilePlan plan_for_file(const TessellateOptions& options, const Box3& box, const std::string& path, double moved = 0);
+FilePlan plan_for_file(const MeshOptions& options, const Box3& box, const std::string& path, double moved = 0);
 
 /// Gives a mesh without positions in double the sums that its file holds.
 void add_double_sums(Mesh& mesh);

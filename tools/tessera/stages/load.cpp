@@ -13,7 +13,6 @@
 #include "console/output.h"
 #include "console/progress.h"
 #include "console/standard_input.h"
-#include "facts/topology.h"
 #include "line/arguments.h"
 #include "tessera/cad.h"
 #include "tessera/io.h"
@@ -81,7 +80,7 @@ void append(Model& model, Model&& other) {
 }
 
 /// Reads one file and adds it to `loaded`.
-Status add_file(const std::string& file, const ModelOptions& options, With with, Timings& timings, Loaded& loaded) {
+Status add_file(const std::string& file, const LoadOptions& options, With with, Timings& timings, Loaded& loaded) {
   Result<Model> model = [&] {
     const auto phase = timings.phase("read");
     return read_any_model(file, options.input_format);
@@ -106,26 +105,6 @@ Status add_file(const std::string& file, const ModelOptions& options, With with,
   return {};
 }
 
-/// A message that begins with "surface 3 (rim): ", as surfaces of a model or faces of a shape are counted, with the
-/// place in the file instead. `first` is the model's surface that is counted as 0.
-Status in_its_file(const Loaded& loaded, std::size_t first, const Status& status) {
-  if (status.index() == Status::no_index) return in_file(loaded.files[0], status);
-  const std::size_t surface = first + static_cast<std::size_t>(status.index());
-  const std::string& message = status.message();
-  const std::string& name = *loaded.model.surfaces[surface].name;
-  const std::string prefix =
-      "surface " + std::to_string(status.index()) + (name.empty() ? "" : " (" + name + ")") + ": ";
-  return loaded.in_surface(surface, {status.code(), message.substr(message.starts_with(prefix) ? prefix.size() : 0)});
-}
-
-/// The set, after its faults are printed, or its error, with the places in the file.
-Result<PatchSet> with_places(const Loaded& loaded, std::size_t first, Result<PatchSet> set) {
-  if (!set) return in_its_file(loaded, first, set.status());
-  for (const Status& fault : set->trim_faults())
-    warn(in_its_file(loaded, first, fault).message() + "; it is kept whole");
-  return set;
-}
-
 }  // namespace
 
 std::vector<std::string> model_format_names() {
@@ -137,7 +116,7 @@ std::vector<std::string> model_format_names() {
 
 std::string model_formats() { return ".bpt, .bv, .g2, .json, .obj, .rib, .step, .stp, .iges, .igs, .brep, .brp"; }
 
-void add_models(Command& command, ModelOptions& options) {
+void add_models(Command& command, LoadOptions& options) {
   command
       .add_words("MODEL", "FILE",
                  "Files with surfaces (" + model_formats() + "), patterns of their names, or - for standard input",
@@ -147,7 +126,7 @@ void add_models(Command& command, ModelOptions& options) {
                      [&options](const std::string& name) { options.input_format = name; });
 }
 
-void check_input(const ModelOptions& options) {
+void check_input(const LoadOptions& options) {
   const auto streams = std::count(options.files.begin(), options.files.end(), stream_name);
   if (streams > 1) throw UsageError("MODEL", "- is there " + std::to_string(streams) + " times; give it once");
   if (streams > 0 && options.input_format.empty()) throw UsageError("MODEL", "- needs --input-format NAME");
@@ -155,12 +134,12 @@ void check_input(const ModelOptions& options) {
     throw UsageError("--input-format", "is for MODEL - only; the extension of a file decides its format");
 }
 
-void check_input_of_team(const ModelOptions& options) {
+void check_input_of_team(const LoadOptions& options) {
   if (std::ranges::find(options.files, stream_name) != options.files.end())
     throw UsageError("MODEL", "processes cannot share standard input: name a file");
 }
 
-void add_reading(Command& command, ModelOptions& options) {
+void add_reading(Command& command, LoadOptions& options) {
   command.add_length("--fit-tolerance", "LENGTH",
                      "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
                      "[1e-6 of the surface's size]",
@@ -169,10 +148,6 @@ void add_reading(Command& command, ModelOptions& options) {
       .add("--cad-reader", "FILE", "Program that reads CAD files [the tessera-cad-reader beside tessera]",
            [](const std::string& file) { ::setenv("TESSERA_CAD_READER", file.c_str(), 1); })
       .check(fault_of_name);
-}
-
-void add_untrimmed(Command& command, ModelOptions& options) {
-  command.add_flag("--untrimmed", "Ignore trimming loops: take whole surfaces", options.untrimmed);
 }
 
 std::size_t Loaded::trimmed() const { return count_trimmed(model.surfaces); }
@@ -185,10 +160,21 @@ Status Loaded::in_surface(std::size_t surface, const Status& status) const {
                                    (name.empty() ? "" : " (" + name + ")") + ": " + status.message());
 }
 
+Status Loaded::in_place(std::size_t first_surface, const Status& status) const {
+  if (status.index() == Status::no_index) return in_file(files[0], status);
+  const std::size_t surface = first_surface + static_cast<std::size_t>(status.index());
+  const std::string& message = status.message();
+  const std::string& name = *model.surfaces[surface].name;
+  const std::string prefix =
+      "surface " + std::to_string(status.index()) + (name.empty() ? "" : " (" + name + ")") + ": ";
+  return in_surface(surface, {status.code(), message.substr(message.starts_with(prefix) ? prefix.size() : 0)});
+}
+
 Status Loaded::status() const { return failed.empty() ? Status() : already_said(failed.back().second.code()); }
 
-Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings) {
+Result<Loaded> load(const Job& job, const LoadOptions& options, With with, Timings& timings) {
   Loaded loaded;
+  loaded.fit = options.fit;
   for (const std::string& file : job.inputs) {
     const Status status = add_file(file, options, with, timings, loaded);
     if (status.ok()) continue;
@@ -208,49 +194,13 @@ void say_warnings(const std::vector<std::string>& warnings) {
   if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
 }
 
-Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings) {
+Status add_patches(Loaded& loaded, Timings& timings) {
   if (loaded.grids.size() == loaded.model.surfaces.size()) return {};
   const auto phase = timings.phase("convert");
-  Result<std::vector<PatchGrid>> grids = convert(loaded.model, options.fit);
-  if (!grids) return in_its_file(loaded, 0, grids.status());
+  Result<std::vector<PatchGrid>> grids = convert(loaded.model, loaded.fit);
+  if (!grids) return loaded.in_place(0, grids.status());
   loaded.grids = *std::move(grids);
   return {};
-}
-
-Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
-  const auto phase = timings.phase("pack");
-  PatchSetOptions packing;
-  packing.trims = !options.untrimmed;
-  return with_places(loaded, 0, make_patch_set(loaded.model, loaded.grids, packing));
-}
-
-Result<PatchSet> pack_faces(const Loaded& loaded, const ModelOptions& options, Timings& timings) {
-  if (options.untrimmed || loaded.trimmed() == 0 || !loaded.model.instances.empty())
-    return pack(loaded, options, timings);
-  const Result<std::optional<JoinedShape>> joined = [&] {
-    const auto phase = timings.phase("join");
-    Shape faces;
-    for (const ModelSurface& surface : loaded.model.surfaces) faces.faces.push_back({surface});
-    return joined_if_free(faces);
-  }();
-  if (!joined || !*joined) return pack(loaded, options, timings);
-  const auto phase = timings.phase("pack");
-  return with_places(loaded, 0, make_patch_set((*joined)->shape, {}, options.fit));
-}
-
-Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
-                            const ModelOptions& options, Timings& timings) {
-  const auto phase = timings.phase("pack");
-  PatchSetOptions packing;
-  packing.trims = !options.untrimmed;
-  FitOptions fit = options.fit;
-  if (stretch > 0) fit.tolerance /= stretch;
-  // Files may leave it to their readers to find which edges are the same. Where that fails, faces stay unconnected.
-  const Shape& stated = loaded.model.shapes[shape];
-  const Result<std::optional<JoinedShape>> joined =
-      packing.trims ? joined_if_free(stated) : Result<std::optional<JoinedShape>>(std::optional<JoinedShape>());
-  const Shape& used = joined && *joined ? (*joined)->shape : stated;
-  return with_places(loaded, first_surface, make_patch_set(used, packing, fit));
 }
 
 Report report_of(const Job& job, const Loaded& loaded) {
@@ -270,11 +220,6 @@ void add_model_facts(Report& report, const Loaded& loaded, std::size_t patches, 
   report.add("trimmed_surfaces", loaded.trimmed());
   report.add("fit_error", fit_json(error));
   report.add("warnings", loaded.model.warnings);
-}
-
-std::string trims_text(std::size_t trimmed) {
-  if (trimmed == 0) return {};
-  return std::to_string(trimmed) + (trimmed == 1 ? " surface is trimmed" : " surfaces are trimmed");
 }
 
 std::string fit_line(const FitError& error) {

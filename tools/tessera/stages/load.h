@@ -1,5 +1,5 @@
 #pragma once
-// The surfaces that a command works on, read from one or several files, as one model, and converted to patches.
+// The first stage: files become one model, and its surfaces patches.
 
 #include <string>
 #include <vector>
@@ -10,23 +10,19 @@
 
 namespace tessera::cli {
 
-/// The options of the command line for models.
-struct ModelOptions {
+struct LoadOptions {
   std::vector<std::string> files;  ///< names and patterns from the command line
   std::string input_format;        ///< of standard input, without the dot
   FitOptions fit;
-  bool untrimmed = false;  ///< whether trimming loops are ignored
 };
 /// Throws UsageError if standard input has no format, or is there twice.
-void check_input(const ModelOptions& options);
+void check_input(const LoadOptions& options);
 /// Throws UsageError if a model is standard input, which the processes of a team cannot share.
-void check_input_of_team(const ModelOptions& options);
+void check_input_of_team(const LoadOptions& options);
 /// Adds MODEL... and --input-format.
-void add_models(Command& command, ModelOptions& options);
+void add_models(Command& command, LoadOptions& options);
 /// Adds --fit-tolerance and --cad-reader.
-void add_reading(Command& command, ModelOptions& options);
-/// Adds --untrimmed.
-void add_untrimmed(Command& command, ModelOptions& options);
+void add_reading(Command& command, LoadOptions& options);
 
 /// The extensions of files that can be read: ".bpt, .bv, ...".
 std::string model_formats();
@@ -39,10 +35,14 @@ struct Loaded {
   std::vector<PatchGrid> grids;                        ///< the patches of each surface, if requested
   std::vector<std::pair<std::string, Status>> failed;  ///< the other files, and their errors, which are already printed
   bool all_have_shapes = true;                         ///< whether all surfaces are faces of the model's instances
+  FitOptions fit;                                      ///< how its surfaces become patches
 
   std::size_t trimmed() const;  ///< number of surfaces with trims
   /// `status` as "part.obj: surface 3 (rim): ...", the surface counted within its file.
   Status in_surface(std::size_t surface, const Status& status) const;
+  /// A message that begins with "surface 3 (rim): ", as surfaces of a model or faces of a shape are counted, with the
+  /// place in the file instead. `first_surface` is the model's surface that is counted as 0.
+  Status in_place(std::size_t first_surface, const Status& status) const;
   /// Ok; an error, already printed, if a file has failed.
   Status status() const;
 };
@@ -52,34 +52,18 @@ enum class With { surfaces, patches, shapes };  ///< shapes: as surfaces if all 
 /// Reads the files of a job one after the other, and converts their surfaces, on all threads. Prints a warning on
 /// standard error for each part of a file that is not read, and leaves out files that fail. Errors: those of the only
 /// file, or of the last one if all of several fail.
-Result<Loaded> load(const Job& job, const ModelOptions& options, With with, Timings& timings);
+Result<Loaded> load(const Job& job, const LoadOptions& options, With with, Timings& timings);
 
 /// Prints a warning about each part of a file that is not read.
 void say_warnings(const std::vector<std::string>& warnings);
 
 /// Converts the surfaces of a model that load() has left as they are. Errors name file and surface.
-Status add_patches(Loaded& loaded, const ModelOptions& options, Timings& timings);
-
-/// Packs what trimming loops keep of all patches into a set; with options.untrimmed, all of them. Prints a warning for
-/// each surface whose loops cannot be used. Errors name file and surface.
-Result<PatchSet> pack(const Loaded& loaded, const ModelOptions& options, Timings& timings);
-
-/// Packs as pack(). If some surface is trimmed, and the file states no edges, those that run side by side are joined, so
-/// that faces meet along them; where that fails, faces stay unconnected.
-Result<PatchSet> pack_faces(const Loaded& loaded, const ModelOptions& options, Timings& timings);
-
-/// Packs the faces of a shape in the same way. An instance of it has the surfaces from `first_surface` on, which
-/// messages name; lengths grow by at most `stretch` where instances stand.
-Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, std::size_t first_surface, double stretch,
-                            const ModelOptions& options, Timings& timings);
+Status add_patches(Loaded& loaded, Timings& timings);
 
 /// Begins the report of a job with the files, the files that failed, and the output.
 Report report_of(const Job& job, const Loaded& loaded);
-/// Adds the end of a report: the number of surfaces and patches, the fit error, warnings. All have no words.
+/// Adds the end of a report, without words: the number of surfaces and patches, the fit error, warnings.
 void add_model_facts(Report& report, const Loaded& loaded, std::size_t patches, const FitError& error);
-
-/// "12 surfaces are trimmed", or an empty text.
-std::string trims_text(std::size_t trimmed);
 
 /// A line with the error of fitted callables, begun by the end of the line before; empty if all is exact.
 std::string fit_line(const FitError& error);

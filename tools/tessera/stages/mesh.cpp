@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "console/memory.h"
@@ -14,7 +13,7 @@ namespace tessera::cli {
 namespace {
 
 /// Refuses a mesh that takes more memory than --max-memory, or than most of what is free.
-Status check_memory(const MeshCapacity& mesh, const TessellateOptions& options, bool has_doubles) {
+Status check_memory(const MeshCapacity& mesh, const MeshOptions& options, bool has_doubles) {
   // Position, normal and parameters of a vertex in float, and its position in double; the indices and the patch of a
   // triangle, or of half a quad; and writing takes about as much again as the vertices.
   const std::uint64_t vertex_bytes = 2 * (32 + (has_doubles ? 24 : 0)), max_bytes = options.max_memory;
@@ -40,30 +39,24 @@ Result<Mesh> run_plan(const Tessellation& plan, const PatchSet& set) {
   return mesh;
 }
 
-/// A set that is meshed once and seen `count` times, at most `stretch` times as large.
-struct SetUse {
-  const PatchSet& set;
-  std::size_t count = 1, first_surface = 0;
-  double stretch = 1;
-};
-
-Result<Tessellation> plan_of(const SetUse& use, const TessellationOptions& options) {
-  Result<Tessellation> plan = Tessellation::make(use.set, options, {.cancel = &interrupted()});
-  if (plan || !options.rates || use.set.cut_count() == 0) return plan;
+Result<Tessellation> plan_of(const PatchSet& set, const TessellationOptions& options) {
+  Result<Tessellation> plan = Tessellation::make(set, options, {.cancel = &interrupted()});
+  if (plan || !options.rates || set.cut_count() == 0) return plan;
   return Status(plan.status().code(), plan.status().message() + " (--untrimmed)");
 }
 
 /// Adds what is known of a plan.
-void add_plan(const Tessellation& plan, const SetUse& use, Meshed& made) {
+void add_plan(const Tessellation& plan, const PackedSet& use, Meshed& made) {
+  const PatchSet& set = *use.set;
   const MeshCapacity size = plan.capacity();
   made.size.vertices += use.count * size.vertices;
   made.size.triangles += use.count * size.triangles;
   made.size.quads += use.count * size.quads;
-  made.patches += use.count * use.set.patch_count();
-  made.cut_patches += use.count * use.set.cut_count();
-  made.whole_faces += use.count * use.set.trim_faults().size();
-  made.fit_error.distance = std::max(made.fit_error.distance, use.stretch * use.set.fit_error().distance);
-  made.fit_error.certified &= use.set.fit_error().certified;
+  made.patches += use.count * set.patch_count();
+  made.cut_patches += use.count * set.cut_count();
+  made.whole_faces += use.count * set.trim_faults().size();
+  made.fit_error.distance = std::max(made.fit_error.distance, use.stretch * set.fit_error().distance);
+  made.fit_error.certified &= set.fit_error().certified;
   made.welded_borders += use.count * plan.welded_borders();
   made.angle = std::max(made.angle, plan.angle() / degree);
   made.patches_without_angle += use.count * plan.patches_without_angle();
@@ -71,12 +64,13 @@ void add_plan(const Tessellation& plan, const SetUse& use, Meshed& made) {
   made.bound = std::max(made.bound, use.stretch * plan.bound());
   made.gap = std::max(made.gap, use.stretch * plan.gap());
   made.proven &= plan.certified();
+  made.tolerance = plan.tolerance();
   for (const std::uint32_t patch : plan.crossed_patches()) {
-    const std::size_t surface = use.first_surface + use.set.source(patch).surface;
+    const std::size_t surface = use.first_surface + set.source(patch).surface;
     if (made.crossed.empty() || made.crossed.back() != surface) made.crossed.push_back(surface);
   }
   for (const std::uint32_t patch : plan.patches_beyond_tolerance()) {
-    const std::size_t surface = use.first_surface + use.set.source(patch).surface;
+    const std::size_t surface = use.first_surface + set.source(patch).surface;
     if (made.rough.empty() || made.rough.back().surface != surface) made.rough.push_back({surface, 0});
     double& bound = made.rough.back().bound;
     bound = std::max(bound, use.stretch * static_cast<double>(plan.bounds()[patch]));
@@ -85,9 +79,9 @@ void add_plan(const Tessellation& plan, const SetUse& use, Meshed& made) {
 
 /// Adds the open edges of a mesh. They are counted where loops cut patches or faces share edges, because the plan's own
 /// number takes for granted that loops do not run over each other.
-Status add_open_edges(const Tessellation& plan, const SetUse& use, const Mesh& mesh, Meshed& made) {
+Status add_open_edges(const Tessellation& plan, const PackedSet& use, const Mesh& mesh, Meshed& made) {
   std::size_t open = plan.open_edges();
-  if (use.set.cut_count() > 0 || !plan.edge_gaps().empty()) {
+  if (use.set->cut_count() > 0 || !plan.edge_gaps().empty()) {
     const Result<MeshReport> report = check(mesh);
     if (!report) return report.status();
     open = report->open_edges;
@@ -96,36 +90,11 @@ Status add_open_edges(const Tessellation& plan, const SetUse& use, const Mesh& m
   return {};
 }
 
-/// A shape's set and its instances.
-struct ShapeSet {
-  std::optional<PatchSet> set;  ///< none: it has no instances
-  std::size_t count = 0, first_surface = 0;
-  double stretch = 0;
-};
-
-/// The sets of all shapes that have instances.
-Result<std::vector<ShapeSet>> pack_shapes(const TessellateOptions& options, const Loaded& loaded, Timings& timings) {
-  const Model& model = loaded.model;
-  std::vector<ShapeSet> shapes(model.shapes.size());
-  for (const Instance& instance : model.instances) {
-    ShapeSet& shape = shapes[instance.shape];
-    if (shape.count++ == 0) shape.first_surface = instance.first_surface;
-    shape.stretch = std::max(shape.stretch, instance.placement->norm_bound());
-  }
-  for (std::size_t k = 0; k < shapes.size(); ++k) {
-    if (shapes[k].count == 0 || model.shapes[k].faces.empty()) continue;
-    Result<PatchSet> set = pack_shape(loaded, k, shapes[k].first_surface, shapes[k].stretch, options.models, timings);
-    if (!set) return set.status();
-    shapes[k].set = *std::move(set);
-  }
-  return shapes;
-}
-
 /// The box of all control points where the instances stand.
-Box3 box_of(const Model& model, std::span<const ShapeSet> shapes) {
+Box3 box_of(const Model& model, const Packed& packed) {
   Box3 box;
   for (const Instance& instance : model.instances) {
-    const std::optional<PatchSet>& set = shapes[instance.shape].set;
+    const std::optional<PatchSet>& set = packed.sets[instance.shape].set;
     for (std::size_t k = 0; set && k < set->patch_count(); ++k)
       for (const Vec3& point : set->patch(k).points()) box.extend(instance.placement->point(point));
   }
@@ -140,13 +109,19 @@ double flat_rounding(const Box3& box, double tolerance, Precision precision) {
   return std::ldexp(std::max(max_abs(box.lower), max_abs(box.upper)) + tolerance, -50);
 }
 
+/// Whether a format holds one mesh, and not instances.
+bool is_flat(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  return extension != ".glb" && extension != ".gltf";
+}
+
 /// The plan of the file, and what flatten() adds to the meshes' bounds.
 struct ShapesPlan {
   FilePlan file;
   double rounding = 0;
 };
 
-Result<ShapesPlan> shapes_plan(const TessellateOptions& options, const Model& model, const Box3& box,
+Result<ShapesPlan> shapes_plan(const MeshOptions& options, const Model& model, const Box3& box,
                                const std::string& path) {
   const bool is_moved = model.instances.size() > 1 || *model.instances[0].placement != Affine();
   ShapesPlan plan{plan_for_file(options, box, path)};
@@ -171,23 +146,28 @@ Status in_shape(const Model& model, std::size_t k, const Status& status) {
           "shape " + std::to_string(k) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message()};
 }
 
-/// Meshes shapes one after the other.
-class ShapeMesher {
+/// Meshes sets one after the other.
+class SetMesher {
  public:
-  ShapeMesher(const TessellateOptions& options, const FilePlan& plan, bool flat, Meshed& made)
+  SetMesher(const MeshOptions& options, const FilePlan& plan, bool flat, Meshed& made)
       : options_(options), plan_(plan), flat_(flat), made_(made) {}
 
-  Status add(const Model& model, std::size_t k, const ShapeSet& shape) {
-    if (!shape.set) return {};
-    const SetUse use{*shape.set, shape.count, shape.first_surface, shape.stretch};
-    const Result<Tessellation> plan = plan_of(use, options_in(shape));
+  Result<Mesh> mesh(const PackedSet& packed, const TessellationOptions& options) {
+    const Result<Tessellation> plan = plan_of(*packed.set, options);
     if (!plan) return plan.status();
-    add_plan(*plan, use, made_);
-    if (const Status status = check_size(plan->capacity(), shape.count); !status.ok()) return status;
-    Result<Mesh> mesh = run_plan(*plan, *shape.set);
+    add_plan(*plan, packed, made_);
+    if (const Status status = check_size(plan->capacity(), packed.count); !status.ok()) return status;
+    Result<Mesh> mesh = run_plan(*plan, *packed.set);
+    if (!mesh || options_.grid) return mesh;
+    if (Status status = add_open_edges(*plan, packed, *mesh, made_); !status.ok()) return status;
+    return mesh;
+  }
+
+  Status add_shape(const Model& model, std::size_t k, const PackedSet& packed) {
+    if (!packed.set) return {};
+    Result<Mesh> mesh = this->mesh(packed, options_in(packed));
     if (!mesh) return mesh.status();
-    if (Status status = add_open_edges(*plan, use, *mesh, made_); !status.ok()) return status;
-    Result<std::vector<MeshPart>> parts = parts_by_face(*mesh, *shape.set, model.shapes[k]);
+    Result<std::vector<MeshPart>> parts = parts_by_face(*mesh, *packed.set, model.shapes[k]);
     if (!parts) return parts.status();
     mesh->parts = *std::move(parts);
     made_.assembly.shapes[k].mesh = *std::move(mesh);
@@ -196,7 +176,7 @@ class ShapeMesher {
 
  private:
   /// Lengths of the model become lengths of the shape.
-  TessellationOptions options_in(const ShapeSet& shape) const {
+  TessellationOptions options_in(const PackedSet& shape) const {
     TessellationOptions options = plan_.options;
     const double stretch = shape.stretch > 0 ? shape.stretch : 1;
     if (options.tolerance) options.tolerance = *options.tolerance / stretch;
@@ -213,20 +193,53 @@ class ShapeMesher {
     memory_.vertices += in_memory * mesh.vertices;
     memory_.triangles += in_memory * mesh.triangles;
     memory_.quads += in_memory * mesh.quads;
-    if (!options_.grid && triangles_ > options_.certified.max_triangles)
+    if (made_.by_shapes && !options_.grid && triangles_ > options_.certified.max_triangles)
       return {StatusCode::invalid_argument, "the meshes of all shapes up to here take " +
                                                 counted(triangles_, "triangle") + ", the limit is " +
                                                 std::to_string(options_.certified.max_triangles)};
     return check_memory(memory_, options_, has_doubles(plan_.options));
   }
 
-  const TessellateOptions& options_;
+  const MeshOptions& options_;
   const FilePlan& plan_;
-  bool flat_;
+  bool flat_;  ///< whether the file gets a mesh for each instance
   Meshed& made_;
   MeshCapacity memory_;
   std::size_t triangles_ = 0;
 };
+
+/// Meshes all surfaces as one set.
+Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
+                   Meshed& made) {
+  const PatchSet& set = *packed.sets[0].set;
+  const FilePlan file = plan_for_file(options, set.model_box(), path);
+  Result<Mesh> mesh = SetMesher(options, file, false, made).mesh(packed.sets[0], file.options);
+  if (!mesh) return mesh.status();
+  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
+  if (!parts) return parts.status();
+  made.mesh = *std::move(mesh);
+  made.mesh.parts = *std::move(parts);
+  add_file(file, options, set.model_box(), made);
+  return {};
+}
+
+/// Meshes each shape once.
+Status mesh_shapes(const Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
+                   Meshed& made) {
+  Result<MeshAssembly> assembly = instances_of(model);
+  if (!assembly) return assembly.status();
+  made.assembly = *std::move(assembly);
+  made.by_shapes = true;
+  const Box3 box = box_of(model, packed);
+  const Result<ShapesPlan> plan = shapes_plan(options, model, box, path);
+  if (!plan) return plan.status();
+  SetMesher mesher(options, plan->file, is_flat(path), made);
+  for (std::size_t k = 0; k < packed.sets.size(); ++k)
+    if (const Status added = mesher.add_shape(model, k, packed.sets[k]); !added.ok()) return in_shape(model, k, added);
+  made.bound += plan->rounding;
+  add_file(plan->file, options, box, made);
+  return {};
+}
 
 /// Whether lengths grow evenly in all directions, so that angles are kept.
 bool is_even(const Affine& placement) {
@@ -241,92 +254,28 @@ bool is_even(const Affine& placement) {
 
 }  // namespace
 
-TessellationOptions plan_options(const TessellateOptions& options) {
-  if (options.grid) return {.rates = UniformRates{options.grid->first, options.grid->second}, .quads = options.quads};
-  TessellationOptions certified = options.certified;
-  certified.quads = options.quads;
-  if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
-  return certified;
-}
+bool allows_shapes(const MeshOptions& options) { return options.pixels == 0 && !options.certified.smallest; }
 
-bool allows_shapes(const TessellateOptions& options) { return options.pixels == 0 && !options.certified.smallest; }
-
-bool suits_shapes(const TessellateOptions& options, const Loaded& loaded) {
+bool suits_shapes(const MeshOptions& options, const Loaded& loaded) {
   if (!allows_shapes(options) || !loaded.all_have_shapes) return false;
   return !options.certified.angle ||
          std::ranges::all_of(loaded.model.instances, [](const Instance& one) { return is_even(*one.placement); });
 }
 
-bool is_flat(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension != ".glb" && extension != ".gltf";
-}
-
-void add_file(const FilePlan& plan, const TessellateOptions& options, const Box3& box, Meshed& made) {
+void add_file(const FilePlan& plan, const MeshOptions& options, const Box3& box, Meshed& made) {
   made.rounding += plan.rounding;
   made.bound += plan.rounding;
-  made.tolerance = plan.tolerance;
+  if (!options.certified.smallest) made.tolerance = plan.tolerance;
   made.has_doubles = has_doubles(plan.options) || plan.has_double_sums;
   if (options.pixels > 0) made.pixels += pixels_of_length(options.view, box, plan.rounding);
-  made.keeps_tolerances = !(made.bound > made.tolerance) && !(options.pixels > 0 && made.pixels > options.pixels);
+  made.keeps_tolerances = !(made.bound > plan.tolerance) && !(options.pixels > 0 && made.pixels > options.pixels);
 }
 
-bool is_too_coarse(const Meshed& made) { return !made.keeps_tolerances && made.rough.empty(); }
-
-void warn_of_rounding(const std::string& output, const Meshed& made) {
-  if (!is_too_coarse(made)) return;
-  warn(output + ": floats of this file move vertices by up to " + readable(made.rounding, 3) +
-       " because the model lies far from zero, so it does not keep the tolerance; .glb does, and .ply and .obj with "
-       "positions in double");
-}
-
-Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, const std::string& path,
-                           Timings& timings) {
-  const Result<PatchSet> set = pack_faces(loaded, options.models, timings);
-  if (!set) return set.status();
+Result<Meshed> mesh_sets(Packed packed, const Loaded& loaded, const MeshOptions& options, const std::string& path,
+                         Timings& timings) {
   const auto phase = timings.phase("evaluate");
-  const SetUse use{.set = *set};
-  const FilePlan file = plan_for_file(options, set->model_box(), path);
-  const Result<Tessellation> plan = plan_of(use, file.options);
-  if (!plan) return in_file(loaded.files[0], plan.status());
   Meshed made;
-  add_plan(*plan, use, made);
-  add_file(file, options, set->model_box(), made);
-  if (options.certified.smallest) made.tolerance = plan->tolerance();
-  if (const Status status = check_memory(made.size, options, has_doubles(file.options)); !status.ok())
-    return in_file(loaded.files[0], status);
-  Result<Mesh> mesh = run_plan(*plan, *set);
-  if (!mesh) return in_file(loaded.files[0], mesh.status());
-  if (!options.grid)
-    if (const Status status = add_open_edges(*plan, use, *mesh, made); !status.ok())
-      return in_file(loaded.files[0], status);
-  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, *set, loaded.model);
-  if (!parts) return in_file(loaded.files[0], parts.status());
-  made.mesh = *std::move(mesh);
-  made.mesh.parts = *std::move(parts);
-  return made;
-}
-
-Result<Meshed> mesh_shapes(const TessellateOptions& options, const Loaded& loaded, const std::string& path,
-                           Timings& timings) {
-  const Model& model = loaded.model;
-  const Result<std::vector<ShapeSet>> shapes = pack_shapes(options, loaded, timings);
-  if (!shapes) return shapes.status();
-  const auto phase = timings.phase("evaluate");
-  Result<MeshAssembly> assembly = instances_of(model);
-  if (!assembly) return in_file(loaded.files[0], assembly.status());
-  Meshed made{.assembly = *std::move(assembly), .by_shapes = true};
-  const Status status = [&]() -> Status {
-    const Box3 box = box_of(model, *shapes);
-    const Result<ShapesPlan> plan = shapes_plan(options, model, box, path);
-    if (!plan) return plan.status();
-    ShapeMesher mesher(options, plan->file, is_flat(path), made);
-    for (std::size_t k = 0; k < shapes->size(); ++k)
-      if (const Status added = mesher.add(model, k, (*shapes)[k]); !added.ok()) return in_shape(model, k, added);
-    made.bound += plan->rounding;
-    add_file(plan->file, options, box, made);
-    return {};
-  }();
+  const Status status = (packed.by_shapes ? mesh_shapes : mesh_as_one)(packed, loaded.model, options, path, made);
   if (!status.ok()) return in_file(loaded.files[0], status);
   return made;
 }

@@ -1,13 +1,12 @@
 #pragma once
-// Meshes of a job: of each shape once, or of all surfaces as one set.
+// The stage after pack: sets of patches become meshes.
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "stages/file_plan.h"
-#include "stages/mesh_options.h"
+#include "stages/pack.h"
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"
 
@@ -44,31 +43,27 @@ struct Meshed {
   bool proven = true;            ///< false if sampled: callables fitted without bounds on their derivatives
 };
 
-/// Returns the options of the library that the command line's stand for.
-TessellationOptions plan_options(const TessellateOptions& options);
 /// Whether the options let a shape be meshed once for all its instances. A budget of triangles is one for the whole
 /// model, and pixels depend on where an instance stands: these need one set of all surfaces.
-bool allows_shapes(const TessellateOptions& options);
+bool allows_shapes(const MeshOptions& options);
 /// Whether the model's shapes can be meshed by the options: an angle is kept by placements that stretch evenly only.
-bool suits_shapes(const TessellateOptions& options, const Loaded& loaded);
-
-/// Whether a format holds one mesh, and not instances.
-bool is_flat(const std::filesystem::path& path);
+bool suits_shapes(const MeshOptions& options, const Loaded& loaded);
 
 /// Adds what a file adds to the bounds of a mesh, and tells whether these still keep the tolerances.
-void add_file(const FilePlan& plan, const TessellateOptions& options, const Box3& box, Meshed& made);
-/// Whether the numbers of the file are too coarse for the tolerances.
-bool is_too_coarse(const Meshed& made);
-/// Warns that the numbers of a file are too coarse for the tolerances, if they are.
-void warn_of_rounding(const std::string& output, const Meshed& made);
+void add_file(const FilePlan& plan, const MeshOptions& options, const Box3& box, Meshed& made);
 
-/// Meshes all surfaces as one set, for a file with the extension of `path`. Errors: those of packing and of
-/// Tessellation.
-Result<Meshed> mesh_as_one(const TessellateOptions& options, const Loaded& loaded, const std::string& path,
-                           Timings& timings);
-/// Meshes each shape once. Files other than glTF will hold one mesh of all instances, which rounds once more. Errors: as
-/// above.
-Result<Meshed> mesh_shapes(const TessellateOptions& options, const Loaded& loaded, const std::string& path,
-                           Timings& timings);
+/// Meshes sets for a file with the extension of `path`, and frees them. Files other than glTF will hold one mesh of all
+/// instances, which rounds once more. Errors: those of Tessellation.
+Result<Meshed> mesh_sets(Packed packed, const Loaded& loaded, const MeshOptions& options, const std::string& path,
+                         Timings& timings);
+
+/// Adds the shapes of a model, in words only if they were meshed.
+void add_shape_facts(Report& report, const Model& model, const Meshed& made);
+/// Adds the sizes of a mesh and the tolerances that it keeps.
+void add_mesh_facts(Report& report, const MeshOptions& options, const Meshed& made);
+/// Adds how borders meet and which faces are not whole. A mesh of rates has none of these facts.
+void add_border_facts(Report& report, const MeshOptions& options, const Meshed& made);
+/// Adds the faults of --strict, which a mesh of rates does not have.
+void add_faults(Report& report, const MeshOptions& options, const std::vector<std::string>& faults);
 
 }  // namespace tessera::cli

@@ -1,9 +1,10 @@
 #include "stages/mesh_options.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "console/console.h"
 #include "console/memory.h"
-#include "console/output.h"
 
 namespace tessera::cli {
 namespace {
@@ -12,7 +13,7 @@ constexpr int max_segments = 4096;
 constexpr std::size_t max_triangles = std::size_t{1} << 40;
 
 /// Adds a budget: a limit of the triangles, not a target.
-void add_cap(Command& command, TessellateOptions& options) {
+void add_cap(Command& command, MeshOptions& options) {
   command
       .add_count("--max-triangles", "COUNT",
                  "Limit on triangles, not for --grid; an error says how many are needed [1073741824]", 1, max_triangles,
@@ -24,12 +25,12 @@ void add_cap(Command& command, TessellateOptions& options) {
       .exclude(command.option("--grid"));
 }
 
-void add_memory(Command& command, TessellateOptions& options) {
+void add_memory(Command& command, MeshOptions& options) {
   command.add("--max-memory", "SIZE", "Limit on the mesh's memory, like 800M or 12G [three quarters of what is free]",
               [&options](const std::string& text) { options.max_memory = parse_bytes("--max-memory", text); });
 }
 
-void add_weld(Command& command, TessellateOptions& options) {
+void add_weld(Command& command, MeshOptions& options) {
   const auto set_weld = [&options](const std::string& text) {
     options.certified.weld = parse_numbers("--weld", text, 1, "of at least 0")[0];
     if (!(*options.certified.weld >= 0))
@@ -42,7 +43,7 @@ void add_weld(Command& command, TessellateOptions& options) {
 }
 
 /// Adds options for the normals and vertices that neighbours share.
-void add_sharing(Command& command, TessellateOptions& options) {
+void add_sharing(Command& command, MeshOptions& options) {
   const Option& grid = command.option("--grid");
   const auto set_crease = [&options](const std::string& text) {
     const double angle = parse_numbers("--crease", text, 1, "from 0 to 180")[0];
@@ -64,7 +65,7 @@ void add_sharing(Command& command, TessellateOptions& options) {
       .exclude(grid);
 }
 
-void add_precision(Command& command, TessellateOptions& options) {
+void add_precision(Command& command, MeshOptions& options) {
   command
       .add_choice("--precision", {"float", "double"},
                   "Precision of positions; double (.ply and .obj) keeps a small tolerance for parts far from each "
@@ -79,7 +80,7 @@ void add_precision(Command& command, TessellateOptions& options) {
 
 }  // namespace
 
-std::vector<const Option*> add_density(Command& command, TessellateOptions& options) {
+std::vector<const Option*> add_density(Command& command, MeshOptions& options) {
   TessellationOptions& certified = options.certified;
   command.begin_group("Density [--relative 0.001]");
   Option& grid = command.add(
@@ -115,7 +116,12 @@ std::vector<const Option*> add_density(Command& command, TessellateOptions& opti
   return {&grid, &tolerance, &relative, &triangles, &angle, &pixels};
 }
 
-void add_view(Command& command, TessellateOptions& options) {
+void set_default(const std::vector<const Option*>& density, MeshOptions& options) {
+  options.is_default = std::ranges::none_of(density, [](const Option* option) { return option->count > 0; });
+  if (options.is_default) options.certified.relative = true, options.certified.tolerance = default_share;
+}
+
+void add_view(Command& command, MeshOptions& options) {
   View& view = options.view;
   const auto set_camera = [&view](const std::string& text) {
     const std::vector<double> n = parse_numbers("--camera", text, 7, "ex,ey,ez,tx,ty,tz,fovdeg");
@@ -151,7 +157,7 @@ void add_view(Command& command, TessellateOptions& options) {
       .need(camera);
 }
 
-void add_mesh_options(Command& command, TessellateOptions& options) {
+void add_mesh_options(Command& command, MeshOptions& options) {
   command.begin_group("The mesh");
   add_cap(command, options);
   add_memory(command, options);
@@ -166,6 +172,14 @@ void add_mesh_options(Command& command, TessellateOptions& options) {
           "is open, or a bound is not proven; not for --grid",
           options.strict)
       .exclude(command.option("--grid"));
+}
+
+TessellationOptions plan_options(const MeshOptions& options) {
+  if (options.grid) return {.rates = UniformRates{options.grid->first, options.grid->second}, .quads = options.quads};
+  TessellationOptions certified = options.certified;
+  certified.quads = options.quads;
+  if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};
+  return certified;
 }
 
 }  // namespace tessera::cli

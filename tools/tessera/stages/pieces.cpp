@@ -95,7 +95,7 @@ Result<std::size_t> count_pieces(const SurfaceSource& source, const TessellateOp
   const Result<Model> sample = read_sample(source);
   if (!sample) return sample.status();
   constexpr double unknown = 5000;  // if the sample cannot be meshed, the mesh of the whole says why
-  const Result<double> learned = bytes_per_surface(*sample, plan_options(options), options.models.fit);
+  const Result<double> learned = bytes_per_surface(*sample, plan_options(options.mesh), options.load.fit);
   const double bytes = learned ? *learned : unknown;
   const double pieces = std::ceil(bytes * double(source.count) / double(options.piece_bytes));
   if (pieces <= max_parts) return static_cast<std::size_t>(std::clamp(pieces, 1.0, double(source.count)));
@@ -171,7 +171,7 @@ Result<std::vector<PartOutline>> find_pieces(const SurfaceSource& source, const 
   const Status status = run_parts(pieces, [&](Transport& transport) -> Status {
     progress.tell(double(transport.part()) / double(pieces));
     const PartRun run = run_of_part(source.count, transport.part(), pieces);
-    Result<PartOutline> outline = find_part(source, run, plan_options(options), transport, options.models.fit);
+    Result<PartOutline> outline = find_part(source, run, plan_options(options.mesh), transport, options.load.fit);
     if (outline) outlines[transport.part()] = *std::move(outline);
     return outline.status();
   });
@@ -192,16 +192,16 @@ Status write_pieces(const SurfaceSource& source, std::span<const PartOutline> ou
       if (!part) return part.status();
       const auto phase = timings.phase("evaluate");
       Progress progress("piece " + std::to_string(k + 1) + " of " + std::to_string(outlines.size()));
-      return tessellate_part(*part, plan.options, progress.execution(), options.models.fit);
+      return tessellate_part(*part, plan.options, progress.execution(), options.load.fit);
     }();
     if (!piece) return piece.status();
     if (plan.has_double_sums) add_double_sums(piece->mesh);
     add_piece(*piece, made);
     const std::uint64_t triangles = made.size.triangles + 2 * made.size.quads;
-    if (!options.grid && triangles > options.certified.max_triangles)
+    if (!options.mesh.grid && triangles > options.mesh.certified.max_triangles)
       return {StatusCode::invalid_argument, "the pieces up to " + std::to_string(k + 1) + " take " +
                                                 counted(triangles, "triangle") + ", the limit is " +
-                                                std::to_string(options.certified.max_triangles)};
+                                                std::to_string(options.mesh.certified.max_triangles)};
     const auto phase = timings.phase("write");
     if (Status status = writer.write(*piece); !status.ok()) return status;
   }
@@ -255,7 +255,7 @@ Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options
     return SurfaceFile::open(job.inputs[0]);
   }();
   if (!file) return file.status();
-  PieceReader reader(*file, options.models.untrimmed);
+  PieceReader reader(*file, options.pack.untrimmed);
   InPieces result;
   const Status status = [&]() -> Status {
     Result<std::vector<PartOutline>> outlines = [&]() -> Result<std::vector<PartOutline>> {
@@ -270,9 +270,9 @@ Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options
     if (!outlines) return outlines.status();
     result.made.fit_error = outlines->front().fit_error;
     const Box3& box = outlines->front().box;
-    const FilePlan plan = plan_for_file(options, box, job.output);
+    const FilePlan plan = plan_for_file(options.mesh, box, job.output);
     const Status written = write_pieces(reader.source(), *outlines, options, plan, *writer, result.made, timings);
-    add_file(plan, options, box, result.made);
+    add_file(plan, options.mesh, box, result.made);
     return written;
   }();
   if (!status.ok())
@@ -281,6 +281,22 @@ Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options
   result.trimmed = reader.trimmed;
   result.warnings = std::move(reader.warnings);
   return result;
+}
+
+Report report_of(const Job& job, const InPieces& result, MeshOptions options) {
+  options.certified.angle.reset();  // pieces keep angles and pixels, too, but don't tell which
+  options.pixels = 0;
+  Loaded read;
+  read.files = job.inputs;
+  Report report = report_of(job, read);
+  report.add("pieces", result.pieces, counted(result.pieces, "piece") + ", ");
+  add_mesh_facts(report, options, result.made);
+  report.add("surfaces", result.surfaces);
+  report.add("patches", result.made.patches);
+  report.add("trimmed_surfaces", result.trimmed);
+  report.add("fit_error", fit_json(result.made.fit_error), fit_line(result.made.fit_error));
+  report.add("warnings", result.warnings);
+  return report;
 }
 
 }  // namespace tessera::cli

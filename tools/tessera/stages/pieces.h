@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "batch/jobs.h"
-#include "stages/mesh.h"
-#include "stages/mesh_options.h"
+#include "stages/write.h"
 
 namespace tessera::cli {
 
@@ -26,5 +25,7 @@ struct InPieces {
 };
 /// Reads the only file of a job, and writes its mesh. Errors name the file.
 Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options, Timings& timings);
+/// Returns their report.
+Report report_of(const Job& job, const InPieces& result, MeshOptions options);
 
 }  // namespace tessera::cli

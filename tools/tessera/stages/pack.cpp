@@ -1,0 +1,120 @@
+#include "stages/pack.h"
+
+#include <algorithm>
+
+#include "tessera/edge_matching.h"
+#include "tessera/topology.h"
+
+namespace tessera::cli {
+namespace {
+
+/// The set, after its faults are printed, or its error, with the places in the file.
+Result<PatchSet> with_places(const Loaded& loaded, std::size_t first_surface, Result<PatchSet> set) {
+  if (!set) return loaded.in_place(first_surface, set.status());
+  for (const Status& fault : set->trim_faults())
+    warn(loaded.in_place(first_surface, fault).message() + "; it is kept whole");
+  return set;
+}
+
+/// Whether some edge has one face, or a face names no edges.
+Result<bool> has_free_edges(const Shape& shape) {
+  const Result<EdgeUses> uses = edge_uses(shape);
+  if (!uses) return uses.status();
+  for (std::size_t k = 0; k < shape.edges.size(); ++k)
+    if ((*uses)[k].size() == 1 && !shape.edges[k].degenerate) return true;
+  for (const ShapeFace& face : shape.faces) {
+    const std::vector<TrimLoop>& loops = edge_loops(face);
+    const auto is_nameless = [](const TrimLoop& loop) { return loop.coedges.empty(); };
+    if (loops.empty() || std::any_of(loops.begin(), loops.end(), is_nameless)) return true;
+  }
+  return false;
+}
+
+/// Packs all surfaces.
+Result<PatchSet> pack_faces(const Loaded& loaded, const PackOptions& options, Timings& timings) {
+  if (options.untrimmed || loaded.trimmed() == 0 || !loaded.model.instances.empty())
+    return pack(loaded, options, timings);
+  const Result<std::optional<JoinedShape>> joined = [&] {
+    const auto phase = timings.phase("join");
+    Shape faces;
+    for (const ModelSurface& surface : loaded.model.surfaces) faces.faces.push_back({surface});
+    return joined_if_free(faces);
+  }();
+  if (!joined || !*joined) return pack(loaded, options, timings);
+  const auto phase = timings.phase("pack");
+  return with_places(loaded, 0, make_patch_set((*joined)->shape, {}, loaded.fit));
+}
+
+/// Packs the faces of a shape. An instance of it has the surfaces from `first_surface` on, which messages name; lengths
+/// grow by at most `stretch` where instances stand.
+Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, const PackedSet& packed,
+                            const PackOptions& options, Timings& timings) {
+  const auto phase = timings.phase("pack");
+  PatchSetOptions packing;
+  packing.trims = !options.untrimmed;
+  FitOptions fit = loaded.fit;
+  if (packed.stretch > 0) fit.tolerance /= packed.stretch;
+  // Files may leave it to their readers to find which edges are the same. Where that fails, faces stay unconnected.
+  const Shape& stated = loaded.model.shapes[shape];
+  const Result<std::optional<JoinedShape>> joined =
+      packing.trims ? joined_if_free(stated) : Result<std::optional<JoinedShape>>(std::optional<JoinedShape>());
+  const Shape& used = joined && *joined ? (*joined)->shape : stated;
+  return with_places(loaded, packed.first_surface, make_patch_set(used, packing, fit));
+}
+
+/// Packs all shapes that have instances.
+Result<Packed> pack_shapes(const Loaded& loaded, const PackOptions& options, Timings& timings) {
+  const Model& model = loaded.model;
+  Packed packed{{}, true};
+  for (std::size_t k = 0; k < model.shapes.size(); ++k) packed.sets.push_back({{}, 0, 0, 0});
+  for (const Instance& instance : model.instances) {
+    PackedSet& shape = packed.sets[instance.shape];
+    if (shape.count++ == 0) shape.first_surface = instance.first_surface;
+    shape.stretch = std::max(shape.stretch, instance.placement->norm_bound());
+  }
+  for (std::size_t k = 0; k < packed.sets.size(); ++k) {
+    if (packed.sets[k].count == 0 || model.shapes[k].faces.empty()) continue;
+    Result<PatchSet> set = pack_shape(loaded, k, packed.sets[k], options, timings);
+    if (!set) return set.status();
+    packed.sets[k].set = *std::move(set);
+  }
+  return packed;
+}
+
+}  // namespace
+
+void add_untrimmed(Command& command, PackOptions& options) {
+  command.add_flag("--untrimmed", "Ignore trimming loops: take whole surfaces", options.untrimmed);
+}
+
+Result<PatchSet> pack(const Loaded& loaded, const PackOptions& options, Timings& timings) {
+  const auto phase = timings.phase("pack");
+  PatchSetOptions packing;
+  packing.trims = !options.untrimmed;
+  return with_places(loaded, 0, make_patch_set(loaded.model, loaded.grids, packing));
+}
+
+Result<Packed> pack_for_meshes(Loaded& loaded, const PackOptions& options, bool by_shapes, Timings& timings) {
+  if (by_shapes) return pack_shapes(loaded, options, timings);
+  if (Status status = add_patches(loaded, timings); !status.ok()) return status;
+  Result<PatchSet> set = pack_faces(loaded, options, timings);
+  if (!set) return set.status();
+  Packed packed;
+  packed.sets.emplace_back().set = *std::move(set);
+  return packed;
+}
+
+Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape) {
+  if (shape.faces.size() > max_joined_faces) return std::optional<JoinedShape>();
+  const Result<bool> is_open = has_free_edges(shape);
+  if (!is_open) return is_open.status();
+  if (!*is_open) return std::optional<JoinedShape>();
+  const Result<double> distance = joining_distance(shape);
+  if (!distance) return distance.status();
+  if (!(*distance > 0)) return std::optional<JoinedShape>();
+  Result<Shape> made = joined_edges(shape, *distance);
+  if (!made) return made.status();
+  return std::optional<JoinedShape>({*std::move(made), *distance});
+}
+
+}  // namespace tessera::cli
