@@ -144,10 +144,8 @@ Status mesh_together(const Job& job, const TessellateOptions& options, const Com
                                                      : part_of_whole(job, options, timings, transport);
   if (Status status = transport.agree(part.status()); !status.ok()) return status;
   const FilePlan plan = plan_for_file(options.mesh, part->box, job.output);
-  Result<PartMesh> own = [&] {
-    const auto phase = timings.phase("mesh");
-    return tessellate_part(*part, plan.options, {}, options.load.fit);
-  }();
+  Result<PartMesh> own =
+      timings.measure("mesh", [&] { return tessellate_part(*part, plan.options, {}, options.load.fit); });
   if (own && plan.has_double_sums) add_double_sums(own->mesh);
   Result<PartSums> sums = sum_parts(own, plan.options, transport);
   if (!sums) return sums.status();

@@ -41,16 +41,11 @@ Report report_of(const std::string& mesh, const MeshReport& found) {
 Status run_check(const Job& job, const CheckOptions& options, const CommonOptions& common, Timings& timings) {
   const std::string& file = job.inputs[0];
   std::vector<std::string> warnings;
-  const Result<Mesh> mesh = [&] {
-    const auto phase = timings.phase("read");
-    return read_mesh(file, {.keep_quads = true, .warnings = &warnings});
-  }();
+  const Result<Mesh> mesh =
+      timings.measure("read", [&] { return read_mesh(file, {.keep_quads = true, .warnings = &warnings}); });
   for (const std::string& warning : warnings) warn(warning);
   if (!mesh) return mesh.status();
-  const Result<MeshReport> report = [&] {
-    const auto phase = timings.phase("check");
-    return check(*mesh);
-  }();
+  const Result<MeshReport> report = timings.measure("check", [&] { return check(*mesh); });
   if (!report) return in_file(file, report.status());
   if (Status status = report_of(file, *report).print({}, common, timings); !status.ok()) return status;
   if (report->non_finite_vertices > 0) {

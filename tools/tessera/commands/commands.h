@@ -6,11 +6,10 @@
 #include <string>
 
 #include "batch/jobs.h"
+#include "batch/team.h"
 #include "line/command_line.h"
 
 namespace tessera::cli {
-
-class Team;
 
 /// The command that the user has chosen.
 struct Session {
@@ -18,13 +17,15 @@ struct Session {
   CommonOptions common;
   Team* team = nullptr;  ///< null: this process alone
 
-  /// Chooses `work` on each job of a plan.
+  /// Chooses `work` on each job of a plan; a team ends each together.
   template <class Options>
   void choose(const Plan& plan, const std::shared_ptr<Options>& options,
               Status (*work)(const Job&, const Options&, const CommonOptions&, Timings&)) {
     command = [=, this] {
-      return run_jobs(plan, common,
-                      [&](const Job& job, Timings& timings) { return work(job, *options, common, timings); });
+      return run_jobs(plan, common, [&](const Job& job, Timings& timings) {
+        const Status own = work(job, *options, common, timings);
+        return team ? team->end_job(own) : own;
+      });
     };
   }
 };

@@ -35,10 +35,9 @@ Status run_convert(const Job& job, const ConvertOptions& options, const CommonOp
   if (!out) return out.status();
   const Result<Loaded> loaded = load(job, options.load, With::surfaces, timings);
   if (!loaded) return loaded.status();
-  const Result<WrittenModel> written = [&] {
-    const auto phase = timings.phase("write");
+  const Result<WrittenModel> written = timings.measure("write", [&] {
     return write_model(loaded->model, format_path(job.output, options.write.format), options.load.fit, *out);
-  }();
+  });
   if (!written) return written.status();
   if (Status status = out->commit(); !status.ok()) return status;
   for (const std::string& warning : written->warnings) warn(warning);

@@ -9,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "batch/team.h"
 #include "commands/commands.h"
 #include "console/output.h"
 #include "console/progress.h"
@@ -280,7 +279,7 @@ Status report(const Job& job, const CommonOptions& common, const Loaded& loaded,
   return report.print({}, common, timings);
 }
 
-Status eval_job(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
+Status run_eval(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output, !options.team || options.team->leads());
   if (!out) return out.status();
   const Result<Loaded> loaded = load(job, options.load, With::surfaces, timings);
@@ -290,20 +289,12 @@ Status eval_job(const Job& job, const EvalOptions& options, const CommonOptions&
   const bool json = writes_json(job, options, common);
   RowWriter<OutputFile> frame(*out, json, options.derivatives);
   frame.begin();
-  Status status = [&] {
-    const auto phase = timings.phase("evaluate");
-    return write_all_rows(*loaded, *places, options, json, *out);
-  }();
+  Status status = timings.measure("evaluate", [&] { return write_all_rows(*loaded, *places, options, json, *out); });
   if (!status.ok()) return status;
   frame.end(common.timings ? Json{{"seconds", timings.as_json()}} : Json::object());
   status = out->commit();
   if (status.ok() && common.json && !job.output.empty()) status = report(job, common, *loaded, places->count, timings);
   return status.ok() ? loaded->status() : status;
-}
-
-Status run_eval(const Job& job, const EvalOptions& options, const CommonOptions& common, Timings& timings) {
-  const Status own = eval_job(job, options, common, timings);
-  return options.team ? options.team->end_job(own) : own;
 }
 
 constexpr const char* eval_footer =

@@ -139,25 +139,19 @@ Status run_info(const Job& job, const InfoOptions& options, const CommonOptions&
   const Result<Isa> isa = default_isa();
   if (!isa) return isa.status();
   Findings found{job.inputs[0], loaded->model, *set, count_model(loaded->model, *set), {}, {}, {}, {}, *isa};
-  if (loaded->trimmed() > 0) {
-    const auto phase = timings.phase("trims");
-    found.trims = find_trims(*loaded);
-  }
-  if (!loaded->model.shapes.empty()) {
-    const auto phase = timings.phase("edges");
-    const Result<TopologyFacts> topology = count_topology(loaded->model);
+  const Model& model = loaded->model;
+  if (loaded->trimmed() > 0) found.trims = timings.measure("trims", [&] { return find_trims(*loaded); });
+  if (!model.shapes.empty()) {
+    const Result<TopologyFacts> topology = timings.measure("edges", [&] { return count_topology(model); });
     if (!topology) return in_file(job.inputs[0], topology.status());
     found.topology = *topology;
   }
-  {
-    const auto phase = timings.phase("joined edges");
-    const Result<std::optional<JoinedFacts>> joined = count_joined(loaded->model);
-    if (!joined && joined.status().code() == StatusCode::out_of_memory) return joined.status();
-    if (joined) found.joined = *joined;  // else loops that a remark tells of
-  }
+  const Result<std::optional<JoinedFacts>> joined =
+      timings.measure("joined edges", [&] { return count_joined(model); });
+  if (!joined && joined.status().code() == StatusCode::out_of_memory) return joined.status();
+  if (joined) found.joined = *joined;  // else loops that a remark tells of
   if (options.max_joins > 0) {
-    const auto phase = timings.phase("joins");
-    const Result<Joins> joins = find_joins(*set, options.max_joins);
+    const Result<Joins> joins = timings.measure("joins", [&] { return find_joins(*set, options.max_joins); });
     if (!joins) return in_file(job.inputs[0], joins.status());
     found.joins = *joins;
   }

@@ -18,7 +18,7 @@
 namespace tessera::cli {
 namespace {
 
-Status cast_job(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
+Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output, options.writes());
   if (!out) return out.status();
   std::vector<Ray> rays;
@@ -33,11 +33,6 @@ Status cast_job(const Job& job, const RaycastOptions& options, const CommonOptio
                         : !options.picture.empty() ? draw_file(job, options, common, *scene, *out, timings)
                                                    : draw_characters(options, *scene, *out, timings);
   return status.ok() ? scene->loaded.status() : status;
-}
-
-Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
-  const Status own = cast_job(job, options, common, timings);
-  return options.team ? options.team->end_job(own) : own;
 }
 
 render::Camera parse_camera(const std::string& text) {

@@ -29,6 +29,11 @@ class Timings {
 
   /// Measures the phase `name`, which must have static storage. Times of the same name are summed.
   Phase phase(std::string_view name) { return {*this, name}; }
+  /// Does `work` as the phase `name`, and returns its result.
+  auto measure(std::string_view name, const auto& work) {
+    const Phase measured = phase(name);
+    return work();
+  }
   void add(std::string_view name, double seconds);
 
   /// "read 0.0123 s, pack 0.001 s; 0.0150 s in all", in the order of the phases.

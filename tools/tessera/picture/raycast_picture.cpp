@@ -66,11 +66,10 @@ Status write_numbers(const Job& job, const RaycastOptions& options, const render
   const render::ClosestHits closest = [&](std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution) {
     return scene.closest(options, rays, hits, execution);
   };
-  const Result<render::HitImage> image = [&] {
-    const auto phase = timings.phase("evaluate");
+  const Result<render::HitImage> image = timings.measure("evaluate", [&] {
     Progress progress("casting rays");
     return render::cast_hits(closest, scene.box(), scene.loaded.model, settings, progress.execution());
-  }();
+  });
   if (!image) return named(job, options, image.status());
   if (!options.writes()) return {};
   const auto phase = timings.phase("write");

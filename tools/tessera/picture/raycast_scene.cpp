@@ -76,10 +76,7 @@ Result<RaycastScene> make_mesh_scene(const Job& job, const RaycastOptions& optio
     if (Status status = add_mesh(file, meshes); !status.ok()) return status;
     loaded.files.push_back(file);
   }
-  Result<PatchSet> set = [&] {
-    const auto phase = timings.phase("pack");
-    return meshes.pack();
-  }();
+  Result<PatchSet> set = timings.measure("pack", [&] { return meshes.pack(); });
   if (!set) return in_file(job.inputs[0], set.status());
   Result<RayScene> rays = build(*set, options, job.inputs[0], timings);
   if (!rays) return rays.status();
@@ -207,8 +204,7 @@ Result<RaycastScene> make_surface_scene(const Job& job, const RaycastOptions& op
   RaycastScene scene{*std::move(loaded), *std::move(set), *std::move(rays), {}, {}};
   scene.colours = colours_of(scene.loaded.model, scene.set);
   if (options.settings.shade == render::Shade::error) {
-    const auto phase = timings.phase("measure");
-    Result<MeshError> error = measure_error(options.error, scene.set);
+    Result<MeshError> error = timings.measure("measure", [&] { return measure_error(options.error, scene.set); });
     if (!error) return error.status();
     scene.error = *std::move(error);
   }

@@ -81,10 +81,7 @@ void append(Model& model, Model&& other) {
 
 /// Reads one file and adds it to `loaded`.
 Status add_file(const std::string& file, const LoadOptions& options, With with, Timings& timings, Loaded& loaded) {
-  Result<Model> model = [&] {
-    const auto phase = timings.phase("read");
-    return read_any_model(file, options.input_format);
-  }();
+  Result<Model> model = timings.measure("read", [&] { return read_any_model(file, options.input_format); });
   if (!model) return model.status();
   say_warnings(model->warnings);
   const bool has_shapes = !model->instances.empty();

@@ -34,12 +34,11 @@ Result<bool> has_free_edges(const Shape& shape) {
 Result<PatchSet> pack_faces(const Loaded& loaded, const PackOptions& options, Timings& timings) {
   if (options.untrimmed || loaded.trimmed() == 0 || !loaded.model.instances.empty())
     return pack(loaded, options, timings);
-  const Result<std::optional<JoinedShape>> joined = [&] {
-    const auto phase = timings.phase("join");
+  const Result<std::optional<JoinedShape>> joined = timings.measure("join", [&] {
     Shape faces;
     for (const ModelSurface& surface : loaded.model.surfaces) faces.faces.push_back({surface});
     return joined_if_free(faces);
-  }();
+  });
   if (!joined || !*joined) return pack(loaded, options, timings);
   const auto phase = timings.phase("pack");
   return with_places(loaded, 0, make_patch_set((*joined)->shape, {}, loaded.fit));

@@ -185,10 +185,7 @@ Status write_pieces(const SurfaceSource& source, std::span<const PartOutline> ou
                     Timings& timings) {
   for (std::size_t k = 0; k < outlines.size(); ++k) {
     Result<PartMesh> piece = [&]() -> Result<PartMesh> {
-      const Result<ModelPart> part = [&] {
-        const auto phase = timings.phase("read");
-        return load_part(source, outlines[k]);
-      }();
+      const Result<ModelPart> part = timings.measure("read", [&] { return load_part(source, outlines[k]); });
       if (!part) return part.status();
       const auto phase = timings.phase("evaluate");
       Progress progress("piece " + std::to_string(k + 1) + " of " + std::to_string(outlines.size()));
@@ -202,11 +199,10 @@ Status write_pieces(const SurfaceSource& source, std::span<const PartOutline> ou
       return {StatusCode::invalid_argument, "the pieces up to " + std::to_string(k + 1) + " take " +
                                                 counted(triangles, "triangle") + ", the limit is " +
                                                 std::to_string(options.mesh.certified.max_triangles)};
-    const auto phase = timings.phase("write");
-    if (Status status = writer.write(*piece); !status.ok()) return status;
+    const Status written = timings.measure("write", [&] { return writer.write(*piece); });
+    if (!written.ok()) return written;
   }
-  const auto phase = timings.phase("write");
-  return writer.end();
+  return timings.measure("write", [&] { return writer.end(); });
 }
 
 /// Makes all threads share one heap. Each piece finds its neighbours on a thread of its own; glibc would keep what these
@@ -250,10 +246,7 @@ Result<InPieces> mesh_in_pieces(const Job& job, const TessellateOptions& options
   share_heap();
   Result<PieceWriter> writer = PieceWriter::make(job.output);
   if (!writer) return writer.status();
-  const Result<SurfaceFile> file = [&] {
-    const auto phase = timings.phase("open");
-    return SurfaceFile::open(job.inputs[0]);
-  }();
+  const Result<SurfaceFile> file = timings.measure("open", [&] { return SurfaceFile::open(job.inputs[0]); });
   if (!file) return file.status();
   PieceReader reader(*file, options.pack.untrimmed);
   InPieces result;
