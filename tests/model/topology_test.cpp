@@ -191,6 +191,18 @@ TEST(Topology, LoopsBeyondTheDomainOfAClosedSurfaceAreMeasuredWithinIt) {
   EXPECT_GT(value_of(edge_gaps(shape, 9))[0], 1);
 }
 
+TEST(Topology, UsesOfEdgesThatAShapeDoesNotHaveAreRefused) {
+  Shape shape = cube();
+  shape.edges.resize(7);
+  EXPECT_EQ(edge_uses(shape).status().code(), StatusCode::invalid_argument);
+  EXPECT_NE(edge_uses(shape).status().message().find(", there are 7 edges"), std::string::npos);
+  EXPECT_FALSE(closed_shells(shape).ok());
+  EXPECT_FALSE(edge_gaps(shape).ok());
+  shape = cube();
+  shape.shells[0].faces[2] = 6;
+  EXPECT_EQ(closed_shells(shape).status().code(), StatusCode::invalid_argument);
+}
+
 TEST(Topology, IdsOfNothingAreRefused) {
   const auto refused = [](auto damage, std::ptrdiff_t index, const std::string& words) {
     Model model = two_cubes();

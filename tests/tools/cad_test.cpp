@@ -62,6 +62,16 @@ TEST_F(CadTool, HitsTellTheFaceAndWhetherTheRayPassesAnEdge) {
   EXPECT_NE(rows[2][14], "");
 }
 
+TEST_F(CadTool, AFileWithShapesAndOneWithoutAreMeshedTogether) {
+  const std::string models = TESSERA_SOURCE_DIR "/tools/models/";
+  const std::string block = models + "bearing_block.step", teapot = models + "teapot.bpt";
+  for (const auto& [first, second] : {std::pair(teapot, block), std::pair(block, teapot)}) {
+    const json facts = json::parse(output_of({"tessellate", first, second, "-o", "a.ply", "--json"}));
+    EXPECT_EQ(facts["models"].size(), 2u);
+    EXPECT_GT(facts["triangles"], 10000);
+  }
+}
+
 TEST_F(CadTool, TheBearingBlockIsMeshedClosedAndDrawnInItsColours) {
   const std::string block = TESSERA_SOURCE_DIR "/tools/models/bearing_block.step";
   const json facts = json::parse(output_of({"tessellate", block, "-o", "a.ply", "--json"}));

@@ -59,7 +59,7 @@ TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
     return json::parse(output_of(arguments)).at("error");
   };
   const json coarse = error_of({"--relative", "0.01"}), usual = error_of({});
-  EXPECT_TRUE(coarse.at("proven"));
+  EXPECT_TRUE(coarse.at("certified"));
   EXPECT_GT(coarse.at("red"), usual.at("red"));
   EXPECT_LT(coarse.at("triangles"), usual.at("triangles"));
   for (const json& error : {coarse, usual}) {
@@ -68,7 +68,7 @@ TEST_F(RaycastTool, ErrorsOfMeshesAreShown) {
   }
   output_of({"tessellate", teapot, "-o", "mesh.ply", "--grid", "3x3"});
   const json given = error_of({"--mesh", "mesh.ply"});
-  EXPECT_FALSE(given.at("proven"));
+  EXPECT_FALSE(given.at("certified"));
   EXPECT_EQ(given.at("found"), given.at("red"));
   EXPECT_GT(given.at("found"), usual.at("found"));
   expect_failure({"raycast", teapot, "-o", "a.png", "--shade", "uv", "--mesh", "mesh.ply"}, 2, "--shade error");

@@ -55,12 +55,13 @@ struct EdgeUses {
     return std::span(uses).subspan(first[edge], first[edge + 1] - first[edge]);
   }
 };
-/// Lists the coedges of each edge. Requires a shape that passes check_topology(). Errors: out_of_memory.
+/// Lists the coedges of each edge. Requires a shape that passes check_topology(). Errors: invalid_argument (an edge or a
+/// face that the shape does not have), out_of_memory.
 Result<EdgeUses> edge_uses(const Shape& shape);
 
 /// Tells for each shell whether it is closed: each edge of its faces, save degenerate ones, has an even number of
-/// coedges in them. A shell without faces, or with a face that names no edges, is not. Requires as edge_uses().
-/// Errors: out_of_memory.
+/// coedges in them. A shell without faces, or with a face that names no edges, is not. Requires and
+/// errors as edge_uses().
 Result<std::vector<bool>> closed_shells(const Shape& shape);
 
 /// Measures for each edge the largest distance of two faces' points at equal parameters of the edge, at both ends and

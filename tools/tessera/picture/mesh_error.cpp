@@ -21,7 +21,7 @@ Result<Mesh> made(const PatchSet& set, double relative, MeshError& error) {
   if (!mesh) return mesh;
   if (const Status status = plan->run(set, mesh->views()); !status.ok()) return status;
   error.red = plan->bound();
-  error.proven = plan->certified();
+  error.certified = plan->certified();
   return mesh;
 }
 
@@ -40,9 +40,9 @@ double largest(const render::MeshDistance& mesh, const PatchSet& set) {
 }  // namespace
 
 void MeshError::add_to(Report& report) const {
-  report.add("error", {{"triangles", triangles}, {"found", found}, {"red", red}, {"proven", proven}},
+  report.add("error", {{"triangles", triangles}, {"found", found}, {"red", red}, {"certified", certified}},
              "\n" + std::to_string(triangles) + " triangles, up to " + readable(found, 3) +
-                 " from the surfaces; red is " + readable(red, 3) + (proven ? ", the proven bound" : ""));
+                 " from the surfaces; red is " + readable(red, 3) + (certified ? ", the proven bound" : ""));
 }
 
 std::string MeshError::caption() const {

@@ -22,7 +22,7 @@ struct MeshError {
   std::size_t triangles = 0;
   double found = 0;  ///< the largest distance at points of a grid over each patch
   double red = 0;    ///< the distance of the last colour: the proven bound, or `found`
-  bool proven = false;
+  bool certified = false;
 
   /// For render::Settings::error.
   double share(const Vec3& point) const { return mesh->distance(point, 4 * red) / red; }

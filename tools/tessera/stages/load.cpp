@@ -79,6 +79,18 @@ void append(Model& model, Model&& other) {
   if (model.file_unit != other.file_unit) model.file_unit.clear();
 }
 
+/// Leaves a model's surfaces without edges: files without shapes are meshed with it, so its shapes would not be all.
+void drop_shapes(Model& model) {
+  model.shapes.clear();
+  model.instances.clear();
+  for (ModelSurface& surface : model.surfaces) {
+    if (std::ranges::all_of(*surface.trims, [](const TrimLoop& loop) { return loop.coedges.empty(); })) continue;
+    std::vector<TrimLoop> loops = *surface.trims;
+    for (TrimLoop& loop : loops) loop.coedges.clear();
+    surface.trims = std::move(loops);
+  }
+}
+
 /// Reads one file and adds it to `loaded`.
 Status add_file(const std::string& file, const LoadOptions& options, With with, Timings& timings, Loaded& loaded) {
   Result<Model> model = timings.measure("read", [&] { return read_any_model(file, options.input_format); });
@@ -98,7 +110,7 @@ Status add_file(const std::string& file, const LoadOptions& options, With with, 
     loaded.model = *std::move(model);
   else
     append(loaded.model, *std::move(model));
-  if (!loaded.all_have_shapes) loaded.model.shapes.clear(), loaded.model.instances.clear();  // they would not be all
+  if (!loaded.all_have_shapes) drop_shapes(loaded.model);
   return {};
 }
 
