@@ -70,7 +70,7 @@ void report(const std::string& name, const PatchSet& set, double relative, bool 
   const std::size_t step = 1 + (set.patch_count() - 1) / max_patches;
   double mesh = 0, rates = 0, best = 0;
   for (std::size_t k = 0; k < set.patch_count(); k += step) {
-    const Rates own = inside.segments()[k].rates();
+    const Rates own = inside.patches().segments[k].rates();
     if (inside.division(k).empty) continue;
     const Rates found = best_rates(set.patch(k), own, tolerance);
     mesh += static_cast<double>(inside.first_triangle(k + 1) - inside.first_triangle(k));
