@@ -68,6 +68,12 @@ TEST(CEvaluate, ScatteredPointsOfSurfaces) {
   tsr_jets jets = sized<tsr_jets>();
   jets.is_double = 1, jets.position = out_of(position, 3), jets.duv = out_of(duv, 3);
   ASSERT_C(tsr_set_evaluate(set.get(), &surfaces, &at_u, &at_v, &jets, nullptr));
+  const Handle<tsr_set> unprepared = set_of(patches);
+  std::vector<double> same(3 * count);
+  tsr_jets again = sized<tsr_jets>();
+  again.is_double = 1, again.position = out_of(same, 3);
+  ASSERT_C(tsr_set_evaluate(unprepared.get(), &surfaces, &at_u, &at_v, &again, nullptr));
+  EXPECT_EQ(same, position);
   for (std::size_t k = 0; k < count; ++k) {
     const SurfaceJet jet = evaluate_jet(patches[surface[k]], u[k], v[k]);
     EXPECT_NEAR(position[3 * k + 2], jet.position.z, 1e-14);

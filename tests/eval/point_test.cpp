@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <thread>
 
 #include "support/allocations.h"
@@ -80,6 +81,24 @@ TEST(Points, SetsWithoutCoefficientsPackThemOnDemand) {
   const std::vector<BezierPatch> patches = mixed_patches(random, 3);
   compare_on_demand<float>(patches);
   compare_on_demand<double>(patches);
+}
+
+TEST(Points, CoefficientsOnDemandAreKeptUntilAnEdit) {
+  PatchSet set = set_of(test::wavy_field(2, 3));
+  const std::size_t before = set.memory_bytes();
+  AllBuffers<float> none(0);
+  EXPECT_TRUE(evaluate(set, PatchSamples<float>{}, none.views()).ok());
+  EXPECT_EQ(set.memory_bytes(), before);
+  Random random(333);
+  const Samples<float> samples = random_samples<float>(random, set.patch_count(), 10);
+  AllBuffers<float> out(samples.size());
+  const std::atomic<bool> cancel = true;
+  EXPECT_EQ(evaluate(set, samples.views(), out.views(), {}, {.cancel = &cancel}).code(), StatusCode::cancelled);
+  EXPECT_TRUE(evaluate(set, samples.views(), out.views()).ok());
+  EXPECT_GE(set.memory_bytes(), before + 6 * 192);
+  const std::vector<Vec3> points(set.patch(0).points().begin(), set.patch(0).points().end());
+  ASSERT_TRUE(set.set_control_points(0, points).ok());
+  EXPECT_LT(set.memory_bytes(), before + 6 * 192);
 }
 
 /// A sample's values depend neither on its neighbours nor on the kernel that their order selects.

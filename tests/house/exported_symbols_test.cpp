@@ -62,6 +62,7 @@ bool declared_in_public(const std::string& symbol) {
 
 /// Constants of public headers, whose address something takes.
 bool is_public_constant(const std::string& symbol) {
+  if (symbol.find_first_of("(<[") != std::string::npos) return false;
   const std::string name = symbol.substr(symbol.rfind(':') + 1);
   return std::ranges::any_of(headers(), [pattern = std::regex("inline constexpr [\\w:]+ " + name + " = ")](
                                             const std::string& text) { return std::regex_search(text, pattern); });

@@ -17,7 +17,8 @@ def main():
     for word, _, file in rows:
         path = engine / file
         text = path.read_text(encoding='utf-8').lower() if path.is_file() else ''
-        if not re.search(rf'\b{word}s?\b', text) and word.replace(' ', '') not in text:
+        is_used = re.search(rf'\b{word}s?\b', text) or (' ' in word and word.replace(' ', '') in text)
+        if not is_used:
             faults.append(f'{word}: {file} ' + ('does not use the word' if text else 'does not exist'))
     print('\n'.join(faults) or f'{len(words)} words')
     return 1 if faults else 0

@@ -66,13 +66,12 @@ TEST(Tessellate, OfAModelIsThePlansMeshWithItsParts) {
   EXPECT_EQ(parts[2].name, "back");
 }
 
-TEST(Tessellate, OfASurfaceIsThatOfAModelOfIt) {
+TEST(Tessellate, OfASurfaceIsThatOfItsPatches) {
   const Surface surface = model().surfaces[0].surface;
-  Model alone;
-  alone.surfaces.push_back({{}, surface});
+  const PatchSet set = value_of(make_patch_set(value_of(to_bezier(ModelSurface{{}, surface}, {}))));
   const TessellationOptions options{.tolerance = 1e-3};
   EXPECT_EQ(value_of(tessera::tessellate(surface, options)).positions,
-            value_of(tessera::tessellate(alone, options)).positions);
+            value_of(tessera::tessellate(set, options)).positions);
   EXPECT_EQ(tessera::tessellate(surface, {}).status().code(), StatusCode::invalid_argument);
 }
 

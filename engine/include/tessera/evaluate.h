@@ -179,16 +179,16 @@ struct PatchSamples {
 
 /// Evaluates all samples. Derivatives are by the patch's parameters.
 ///
-/// A set without BlockKinds::float_points (double_points) gets these coefficients at the first call, and at the first one
-/// after each edit. Samples may come in any order; those sorted by patch, a
-/// dozen or more per patch, run up to twice as fast. Arrays (views of stride 1) are read in place, other views are
-/// copied first.
+/// A set without BlockKinds::float_points (double_points) packs these coefficients at the first call, and at the first
+/// one after each edit. Samples may come in any order; those sorted by patch, a dozen or more per patch, run up to twice
+/// as fast. Arrays (views of stride 1) are read in place, other views are copied first.
 ///
-/// Errors, with nothing written: buffer_too_small, count_mismatch (fewer
-/// u or v than patches), invalid_argument (no output; a view that lacks a component, is misaligned, has a stride below
-/// 1, or overlaps another; index = the sample: no such patch, a parameter outside [0,1]), non_finite (index = the
-/// sample; or the patch, whose coefficients are out of the range of the numbers), isa_unavailable. cancelled leaves
-/// outputs partly written. Memory: none, if the set holds the coefficients. Threads: the same bytes for any number of threads, any order of the samples, any choice
+/// Errors, with nothing written: buffer_too_small, count_mismatch (fewer u or v than patches), invalid_argument (no
+/// output; a view that lacks a component, is misaligned, has a stride below 1, or overlaps another; index = the sample:
+/// no such patch, a parameter outside [0,1]), non_finite (index = the sample; or the patch, if its coefficients are out
+/// of the range of the numbers), isa_unavailable, out_of_memory. cancelled leaves outputs partly written.
+/// Memory: that of BlockKinds::float_points (double_points), unless the set holds them; else none.
+/// Threads: the same bytes for any number of threads, any order of the samples, any choice
 /// of outputs, and on AVX2 and AVX-512 (NEON is not tested).
 ///
 /// Error bounds: as for grids, with exact parameters. On SSE2, where weights are made without fused multiply-adds:

@@ -23,9 +23,11 @@ Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options,
 /// Makes a model's mesh in one call, from make_patch_set(), with parts_by_surface(). Errors: as above, and those of
 /// these two.
 Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, const Execution& execution = {});
-/// Makes the mesh of one surface of any kind in one call. Errors: as above.
+/// Makes the mesh of one surface of any kind in one call. Errors: as for a model.
 Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& options, const Execution& execution = {});
-/// Makes the mesh of a shape in one call, closed along the edges that its faces share. Errors: as above.
+/// Makes the mesh of a shape in one call, from make_patch_set(), with parts_by_face(). Along the edges that faces share
+/// it is closed, unless TessellationOptions::close_edges is false. Errors: those of these calls, as for a set;
+/// invalid_argument (loops of a face cannot be used: PatchSet::trim_faults(); index = the face).
 Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution = {});
 
 }}  // namespace tessera::abi_0_1

@@ -60,15 +60,15 @@ struct EdgeUses {
 Result<EdgeUses> edge_uses(const Shape& shape);
 
 /// Tells for each shell whether it is closed: each edge of its faces, save degenerate ones, has an even number of
-/// coedges in them. A shell without faces, or with a face that names no edges, is not. Requires and
-/// errors as edge_uses().
+/// coedges in them. A shell without faces, or with a face that names no edges, is not. Requires a
+/// shape that passes check_topology(). Errors: those of edge_uses().
 Result<std::vector<bool>> closed_shells(const Shape& shape);
 
 /// Measures for each edge the largest distance of two faces' points at equal parameters of the edge, at both ends and
 /// `samples` - 2 parameters evenly between. 0 for an edge of one coedge. A measurement, not a bound; lengths are those
-/// of the shape's space. Requires as edge_uses().
+/// of the shape's space. Requires a shape that passes check_topology().
 ///
-/// Errors: invalid_argument (fewer than two samples), those of evaluate_jet().
+/// Errors: invalid_argument (fewer than two samples), those of edge_uses() and evaluate_jet().
 Result<std::vector<double>> edge_gaps(const Shape& shape, int samples = 9);
 
 }}  // namespace tessera::abi_0_1

@@ -123,32 +123,19 @@ bool PatchSet::Impl::pack_bernstein(std::size_t index, const BlockGroup& group, 
   return true;
 }
 
-bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, const Box3& hull) {
-  if (!kinds.float_points && !kinds.double_points) return true;
+bool PatchSet::Impl::pack_points(std::size_t index, const BlockGroup& group, const Box3& hull,
+                                 Coefficients<float>* to_f32, Coefficients<double>* to_f64) const {
+  if (!to_f32 && !to_f64) return true;
   const RelativeNet net(patches[index], origin);
   const Slot slot = slots[index];
   const bool curve = is_curve(patches[index], collapsed[index]);
   const Place place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()};
-  if (!fits(net, kinds.float_points, net.largest(hull))) return false;
+  if (!fits(net, to_f32 != nullptr, net.largest(hull))) return false;
   const double size = net.tangent_size(hull);
-  if (kinds.float_points) place.write_points(f32, size);
-  if (kinds.double_points) place.write_points(f64, size);
+  if (to_f32) place.write_points(*to_f32, size);
+  if (to_f64) place.write_points(*to_f64, size);
   return true;
 }
-
-template <class T>
-bool PatchSet::Impl::pack_points(std::size_t index, Coefficients<T>& to) const {
-  const BlockGroup& group = group_of_block(slots[index].block);
-  const Box3 hull = patches[index].hull_box();
-  const RelativeNet net(patches[index], origin);
-  const bool curve = is_curve(patches[index], collapsed[index]);
-  if (!fits(net, sizeof(T) == sizeof(float), net.largest(hull))) return false;
-  const Slot slot = slots[index];
-  Place{group, slot, lane_counts[slot.block], net, curve, hull.diagonal()}.write_points(to, net.tangent_size(hull));
-  return true;
-}
-template bool PatchSet::Impl::pack_points(std::size_t index, Coefficients<float>& to) const;
-template bool PatchSet::Impl::pack_points(std::size_t index, Coefficients<double>& to) const;
 
 bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, const Box3& hull) {
   if (!kinds.float_power && !kinds.double_power) return true;

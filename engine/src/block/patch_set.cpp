@@ -214,9 +214,18 @@ Result<std::shared_ptr<const Coefficients<T>>> PatchSet::Impl::points(const std:
     make_room_for_points(*this, made->coefficients);
     LeastIndex failed;
     constexpr std::size_t patches_in_piece = 256;
+    const auto pack_one = [&](std::size_t k, Coefficients<float>* to_f32, Coefficients<double>* to_f64) {
+      return pack_points(k, group_of_block(slots[k].block), patches[k].hull_box(), to_f32, to_f64);
+    };
     const auto pack_some = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k)
-        if (!pack_points(k, made->coefficients)) failed.add(k);
+      for (std::size_t k = begin; k < end; ++k) {
+        bool fits = false;
+        if constexpr (is_f64)
+          fits = pack_one(k, nullptr, &made->coefficients);
+        else
+          fits = pack_one(k, &made->coefficients, nullptr);
+        if (!fits) failed.add(k);
+      }
     };
     Status status = parallel_for(patches.size(), patches_in_piece, {.cancel = cancel}, pack_some);
     if (!status.ok()) return status;

@@ -103,6 +103,8 @@ class PatchSet::Impl {
   void note_edits(std::span<const std::uint32_t> of) {
     ++revision;
     for (const std::uint32_t patch : of) edited[patch] = revision;
+    f32_points.store(nullptr);
+    f64_points.store(nullptr);
   }
 
   const BlockGroup& group_of_block(std::size_t block) const;
@@ -157,10 +159,12 @@ class PatchSet::Impl {
   /// Pack one kind of coefficients of a patch of `group` whose collapsed edges are known; `hull` is its box. Return
   /// false if a coefficient does not fit.
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
-  bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull);
-  /// Packs coefficients for scattered points into memory that has room for them.
-  template <class T>
-  bool pack_points(std::size_t index, Coefficients<T>& to) const;
+  /// Writes to memory that has room for coefficients for scattered points, or to none if it is null.
+  bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull, Coefficients<float>* to_f32,
+                   Coefficients<double>* to_f64) const;
+  bool pack_points(std::size_t index, const BlockGroup& group, const Box3& hull) {
+    return pack_points(index, group, hull, kinds.float_points ? &f32 : nullptr, kinds.double_points ? &f64 : nullptr);
+  }
   bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
   /// Packs all patches. Errors: non_finite (the first patch in the order of the lanes that doesn't fit).
   Status pack_all();

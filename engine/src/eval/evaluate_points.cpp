@@ -73,7 +73,7 @@ Status run(const PatchSet::Impl& set, const Source& source, const QuantityViews<
   int order = 0;
   if (Status status = check_call(source, out, options, order); !status.ok()) return status;
   const Result<Isa> isa = usable_isa(options.isa);
-  if (!isa) return isa.status();
+  if (!isa || source.count() == 0) return isa.status();
   const std::size_t capacity = ChunkSamples<T>::capacity;
   const bool serial = source.count() <= (order > 0 ? serial_normals : serial_positions);
   const std::size_t grain = serial ? std::max<std::size_t>(source.count(), 1) : capacity;

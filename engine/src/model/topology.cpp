@@ -206,8 +206,8 @@ Status check_edge_ids(const Shape& shape) {
           item("face", face) + " names " + item("edge", largest) + there_are(shape.edges.size(), "edge", "edges"),
           static_cast<std::ptrdiff_t>(face));
   }
-  for (const Shell& shell : shape.shells)
-    for (const std::uint32_t face : shell.faces)
+  for (std::size_t shell = 0; shell < shape.shells.size(); ++shell)
+    for (const std::uint32_t face : shape.shells[shell].faces)
       if (face >= shape.faces.size())
         return Status(StatusCode::invalid_argument,
                       "a shell names " + item("face", face) + there_are(shape.faces.size(), "face", "faces"));

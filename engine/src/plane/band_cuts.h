@@ -23,7 +23,7 @@ enum class CellUse : std::uint8_t {
 class BandCuts {
  public:
   /// Finds the cuts of `marks` with as many `points`. `uses`: by cell. `corners`: by grid vertex, the index of the
-  /// point that stands there, or no_place. `vertices`: the grid vertices that follow on the points.
+  /// point that stands there, or no_id. `vertices`: the grid vertices that follow on the points.
   void find(const ChordMarks& marks, std::size_t points, std::span<const CellUse> uses,
             std::span<const std::uint32_t> corners, std::span<const std::uint32_t> vertices);
   /// The cuts, between points by their index.

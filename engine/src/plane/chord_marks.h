@@ -53,7 +53,7 @@ class ChordMarks {
   const GridLines& grid() const { return grid_; }
   const ParameterPoint& point(std::uint32_t index) const { return points_[index]; }
   GridPlace cell_of(std::uint32_t point) const { return cells_of_points_[point]; }
-  /// The first point that is a grid vertex exactly; no_place if none is.
+  /// The first point that is a grid vertex exactly; no_id if none is.
   std::uint32_t point_at(std::uint32_t vertex) const { return points_at_[vertex]; }
   /// The chords that are not sides of cells.
   std::span<const PlaneSegment> chords() const { return chords_; }
@@ -68,7 +68,7 @@ class ChordMarks {
   /// of a cell crosses the line there: crossings count for the vertices beyond them.
   bool is_inside_after_v(std::uint32_t vertex) const { return is_inside_along_v(vertex) != on_line_u(vertex); }
   bool is_inside_after_u(std::uint32_t vertex) const { return is_inside_along_u(vertex) != on_line_v(vertex); }
-  /// The end of a chord near a vertex; no_place if no chord is near.
+  /// The end of a chord near a vertex; no_id if no chord is near.
   std::uint32_t near_point(std::uint32_t vertex) const { return near_points_[vertex]; }
   /// Whether an odd number of chords are the side of a cell that runs along u, or v, from a vertex on.
   bool on_line_u(std::uint32_t vertex) const { return on_line_u_[vertex] != 0; }

@@ -110,7 +110,6 @@ Status add_file(const std::string& file, const LoadOptions& options, With with, 
     loaded.model = *std::move(model);
   else
     append(loaded.model, *std::move(model));
-  if (!loaded.all_have_shapes) drop_shapes(loaded.model);
   return {};
 }
 
@@ -191,6 +190,7 @@ Result<Loaded> load(const Job& job, const LoadOptions& options, With with, Timin
     complain(status.message());
     loaded.failed.emplace_back(file, status);
   }
+  if (!loaded.all_have_shapes) drop_shapes(loaded.model);
   if (!loaded.files.empty()) return loaded;
   return Status(loaded.failed.back().second.code(),
                 "none of the " + std::to_string(loaded.failed.size()) + " models can be used");

@@ -155,7 +155,7 @@ class Closer {
   /// Makes a point of each line that closes a gap, if both of its ends are one place: its other vertices are there too.
   void join_gaps() {
     if (gaps_.empty()) return;
-    std::vector<std::uint32_t> places(count_, no_id);  // by vertex of a point: its place
+    std::vector<std::uint32_t> places(count_, no_id);  // by vertex of a station: its place
     for (const StationVertices::Station& station : met_.stations)
       for (std::uint32_t k = 0; k < station.count && !is_open_[station.edge]; ++k)
         places[of_stations_[station.first + k]] = sets_->find(of_stations_[station.first + k]).member;

@@ -51,7 +51,15 @@ Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& optio
 
 Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution) {
   const Result<PatchSet> set = make_patch_set(shape);
-  return set ? tessellate(*set, options, execution) : set.status();
+  if (!set) return set.status();
+  if (const std::span<const Status> faults = set->trim_faults(); !faults.empty())
+    return Status(StatusCode::invalid_argument, faults.front().message(), faults.front().index());
+  Result<Mesh> mesh = tessellate(*set, options, execution);
+  if (!mesh) return mesh;
+  Result<std::vector<MeshPart>> parts = parts_by_face(*mesh, *set, shape);
+  if (!parts) return parts.status();
+  mesh->parts = *std::move(parts);
+  return mesh;
 }
 
 }}  // namespace tessera::abi_0_1

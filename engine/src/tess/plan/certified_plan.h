@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "block/patch_set_impl.h"
@@ -59,7 +60,7 @@ struct DividedPatches {
 /// VertexCopies, 4 * patch + side.
 class CertifiedPlan {
  public:
-  explicit CertifiedPlan(DividedPatches patches) : patches_(std::move(patches)) { lay_out(); }
+  explicit CertifiedPlan(DividedPatches&& patches) : patches_(std::move(patches)) { lay_out(); }
 
   const DividedPatches& patches() const { return patches_; }
   std::size_t patch_count() const { return patches_.divisions.size(); }

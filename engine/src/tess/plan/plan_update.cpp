@@ -27,6 +27,7 @@ PlanUpdate::PlanUpdate(PlanFacts facts, const PlanOfSet& of)
       own_roundings_(copied_.bits.empty() ? 0 : of.set.patches.size()),
       displacements_(own_roundings_.size(), 0.0),
       proven_(of.set.patches.size()) {
+  facts_.needs.follow(of.set);
   std::ranges::copy(facts_.borders.weld().displacements, displacements_.begin());
   for (std::size_t patch = 0; patch < own_roundings_.size(); ++patch)
     own_roundings_[patch] =

@@ -1,6 +1,8 @@
 #pragma once
-// The errors of limits that patches cannot keep, or only with too many triangles.
+// The errors of limits that patches cannot keep, or only with too many triangles, and the tolerance that they could.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "tess/plan/certified_plan.h"

@@ -52,7 +52,7 @@ class PieceChords {
   /// than 2^20 chords. The errors of the pieces count as a part of the sliver.
   double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points,
                 std::vector<double>& parameters);
-  /// Does the same with chords that also end at stations. All pieces are of one curve.
+  /// Appends the points of chords that also end at stations. All pieces are of one curve.
   double append(std::span<const TrimPiece> chain, const CurveStations& stations, const ChordLimits& limits,
                 std::vector<ParameterPoint>& points, std::vector<double>& parameters);
 

@@ -105,7 +105,7 @@ class PatchCutter {
   std::vector<ParameterPoint> points_;
   std::vector<PlaneSegment> chords_;
   std::vector<LoopChord> loop_chords_;
-  std::vector<std::uint32_t> marks_;  ///< by chord: its place in loop_chords_, or no_place on a side
+  std::vector<std::uint32_t> marks_;  ///< by chord: its place in loop_chords_, or no_id on a side
   std::vector<double> parameters_;    ///< of the points of one chain
   std::vector<double> lines_u_, lines_v_;
   GridLines grid_;
