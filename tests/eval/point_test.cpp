@@ -86,7 +86,7 @@ TEST(Points, SetsWithoutCoefficientsPackThemOnDemand) {
 TEST(Points, CoefficientsOnDemandAreKeptUntilAnEdit) {
   PatchSet set = set_of(test::wavy_field(2, 3));
   const std::size_t before = set.memory_bytes();
-  AllBuffers<float> none(0);
+  AllBuffers<float> none(1);
   EXPECT_TRUE(evaluate(set, PatchSamples<float>{}, none.views()).ok());
   EXPECT_EQ(set.memory_bytes(), before);
   Random random(333);

@@ -169,8 +169,8 @@ void samples_by_patch(Table& table, const PatchSet& set) {
   const std::vector<Vec3> corners{{0, 0, 0}, {0, 1e200, 0}, {1e200, 0, 0}, {1e200, 1e200, 0}};
   PatchSetOptions in_double;
   in_double.blocks = {.float_bernstein = false, .double_bernstein = true};
-  const PatchSet far =
-      value_of(PatchSet::make(std::vector{value_of(BezierPatch::polynomial(1, 1, corners))}, in_double));
+  const BezierPatch huge = value_of(BezierPatch::polynomial(1, 1, corners));
+  const PatchSet far = value_of(PatchSet::make(std::vector{huge, huge}, in_double));
   table.row("a set in double, too far away for float", non_finite, evaluate(far, sound, rows.views()));
 }
 

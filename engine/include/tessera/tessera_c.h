@@ -222,9 +222,8 @@ typedef struct tsr_jets {
  * Derivatives are by the patch's parameters. In double the set needs TSR_SET_DOUBLE. */
 tsr_status tsr_set_grid(const tsr_set* set, const double* u, size_t count_u, const double* v, size_t count_v,
                         const tsr_jets* out, const tsr_run* run);
-/* Evaluates at scattered points of surfaces, in double. Without TSR_SET_POINTS the first call after each edit packs all
- * patches. `surface`: uint32_t, null data: surface 0; `u`, `v`: double, in the surface's parameters, by which derivatives
- * are. One record of u per point. */
+/* Evaluates one point for each record of u, in double. Without TSR_SET_POINTS the first call after each edit packs the
+ * set. `surface`: uint32_t, null data: surface 0; `u`, `v`: double, in the surface's parameters, as are derivatives. */
 tsr_status tsr_set_evaluate(const tsr_set* set, const tsr_in* surface, const tsr_in* u, const tsr_in* v,
                             const tsr_jets* out, const tsr_run* run);
 
