@@ -178,8 +178,8 @@ class EditedTopologyFollowed {
     }
     if (!stays_together_ || plan_->welded_borders() + fresh->welded_borders() > 0) return;
     const CertifiedPlan &ours = proven_mesh_of(*plan_).plan(), &theirs = proven_mesh_of(*fresh).plan();
-    const bool has_f64 =
-        !ours.patches().f64_patches.empty() || !theirs.patches().f64_patches.empty();  // which border leads is kept too
+    const bool has_f64 = !ours.patches().rare->f64_patches.empty() ||
+                         !theirs.patches().rare->f64_patches.empty();  // which border leads is kept too
     if (has_f64 || !std::ranges::equal(ours.patches().segments, theirs.patches().segments)) return;
     const Mesh anew = mesh_of(set_, *fresh);
     EXPECT_EQ(mesh_.indices, anew.indices);

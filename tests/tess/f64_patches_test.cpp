@@ -34,7 +34,7 @@ std::vector<std::vector<BezierPatch>> half_far_strips() {
 }
 
 std::size_t f64_count(const Tessellation& plan) {
-  const auto patches = proven_mesh_of(plan).plan().patches().f64_patches;
+  const auto patches = proven_mesh_of(plan).plan().patches().rare->f64_patches;
   return static_cast<std::size_t>(std::count(patches.begin(), patches.end(), 1));
 }
 

@@ -98,6 +98,8 @@ inline void expect_closed(const Mesh& mesh) {
 
 inline bool is_f64(const Tessellation& plan, std::size_t patch) { return proven_mesh_of(plan).plan().is_f64(patch); }
 /// Whether vertices of any patch come from doubles.
-inline bool is_f64(const Tessellation& plan) { return !proven_mesh_of(plan).plan().patches().f64_patches.empty(); }
+inline bool is_f64(const Tessellation& plan) {
+  return !proven_mesh_of(plan).plan().patches().rare->f64_patches.empty();
+}
 
 }  // namespace tessera::test

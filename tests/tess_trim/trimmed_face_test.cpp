@@ -241,7 +241,7 @@ TEST(TrimmedFace, FarFromTheOriginKeepsItsBoundWithoutCracks) {
     face.set = value_of(make_patch_set(face.model, {.origin = Vec3{}}));
     const Mesh mesh = face.mesh(1e-3);
     const Tessellation plan = value_of(Tessellation::make(face.set, {.tolerance = 1e-3}));
-    const auto is_f64 = proven_mesh_of(plan).plan().patches().f64_patches;
+    const auto is_f64 = proven_mesh_of(plan).plan().patches().rare->f64_patches;
     ASSERT_EQ(is_f64.size(), 12u);
     EXPECT_FALSE(is_f64[0]);
     EXPECT_TRUE(is_f64[11]);
@@ -275,7 +275,7 @@ TEST(TrimmedFace, FarFromTheOriginKeepsPixels) {
     const View view{.eye = {10002.9, 2.5, 1 + height}, .target = {10002.9, 2.4, 0}, .width = 640, .height = 480};
     const Result<Tessellation> plan = Tessellation::make(face.set, {.pixels = PixelTolerance{4, view}});
     ASSERT_TRUE(plan) << height << ": " << plan.status().message();
-    const auto is_f64 = proven_mesh_of(*plan).plan().patches().f64_patches;
+    const auto is_f64 = proven_mesh_of(*plan).plan().patches().rare->f64_patches;
     mixed += std::ranges::count(is_f64, 0) > 0;
     EXPECT_LE(plan->pixels(), 4 * (1 + 1e-6));
   }

@@ -51,7 +51,7 @@ Status ProvenMesh::start(PatchSet& set, const PatchEdits& edits, const MeshViews
 Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution) {
   Result<PlannerOptions> planned = planner_options(options_, set);
   if (!planned) return planned.status();
-  planned->f64_patches.assign(plan_.patches().f64_patches.begin(), plan_.patches().f64_patches.end());
+  planned->f64_patches.assign(plan_.patches().rare->f64_patches.begin(), plan_.patches().rare->f64_patches.end());
   Result<PlanFacts> facts = find_plan_facts(impl_of(set), *planned, {.cancel = execution.cancel});
   if (!facts) return facts.status();
   update_ = std::make_unique<PlanUpdate>(*std::move(facts), of(impl_of(set)));

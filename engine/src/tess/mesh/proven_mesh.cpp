@@ -44,7 +44,7 @@ Status refused_in_float(const Status& refusal, const PatchSet& set, PlannerOptio
   planned.f64_patches.assign(set.patch_count(), 1);
   const Result<PlanFacts> facts = find_plan_facts(impl_of(set), planned, {});
   if (!facts) return facts.status();
-  const auto is_kept = [&](const Result<CertifiedPlan>& plan) { return plan && plan->patches().beyond.empty(); };
+  const auto is_kept = [&](const Result<CertifiedPlan>& plan) { return plan && plan->patches().rare->beyond.empty(); };
   const PlanRequest request{tolerance, planned.fewest, {}, options.max_triangles};
   const bool keeps = !is_rough(facts->needs, tolerance) && is_kept(make_limited_plan(*facts, request, {}));
   const auto nearest = keeps ? std::optional<double>() : nearest_tolerance(*facts, options.max_triangles);
@@ -154,8 +154,8 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .pixels = plan_.patches().pixels,
           .welded_borders = welded_borders_,
           .open_edges = plan_.patches().open_edges,
-          .crossed = plan_.patches().crossed,
-          .beyond = plan_.patches().beyond,
+          .crossed = plan_.patches().rare->crossed,
+          .beyond = plan_.patches().rare->beyond,
           .gap = plan_.closed() ? plan_.closed()->gap : 0,
           .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>()};
 }
@@ -224,7 +224,7 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   if (Status status = check_views(out, capacity(), plan_.patches().has_f64_positions); !status.ok()) return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  if (plan_.patches().trims != impl_of(set).trims)
+  if (plan_.patches().rare->trims != impl_of(set).trims)
     return {StatusCode::stale, "the plan was made for a set that other trimming loops cut"};
   const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };

@@ -20,8 +20,8 @@ namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  ///< the limit of 32-bit indices
 
-/// How patches are divided, and the bounds that they keep. The stages of make_plan() fill it one after the other.
-struct DividedPatches {
+/// What few plans have, and what takes memory of its own there.
+struct RarePatches {
   /// A patch of an area without triangles: opposite borders are points, and the line between them is the border of
   /// another, or a point that another has.
   struct LinePatch {
@@ -31,29 +31,50 @@ struct DividedPatches {
 
   /// `[patch]`: 1 if its vertices come from the set's double control points, see F64Points; empty if no patch's do.
   /// Borders of one edge then have the same positions only after VertexCopies are made.
-  std::vector<std::uint8_t> f64_patches = {};
-  bool has_f64_positions = false;  ///< whether the mesh has positions in double: then all f64_patches are 1
+  std::vector<std::uint8_t> f64_patches;
+  std::vector<std::uint32_t> beyond;  ///< by choose_rates(): patches whose bounds exceed the limits, by growing patch
+  std::vector<LinePatch> lines;       ///< by divide_patches()
 
+  // By FaceCutter:
+  std::shared_ptr<const PatchTrims> trims;  ///< those of the set
+  std::vector<CutPatch> cuts;               ///< the patches that loops cut, by growing patch
+  std::vector<std::uint32_t> crossed;       ///< cut patches without triangles, because their chords cross
+
+  std::optional<ClosedEdges> closed;  ///< by close_faces(): the vertices that faces share along edges
+};
+
+/// RarePatches, or none.
+class RareSlot {
+ public:
+  const RarePatches* operator->() const {
+    static const RarePatches none;
+    return value_ ? value_.get() : &none;
+  }
+  RarePatches& make() {
+    if (!value_) value_ = std::make_unique<RarePatches>();
+    return *value_;
+  }
+
+ private:
+  std::unique_ptr<RarePatches> value_;
+};
+
+/// How patches are divided, and the bounds that they keep. The stages of make_plan() fill it one after the other.
+struct DividedPatches {
   // By choose_rates():
   std::vector<PatchSegments> segments = {};     ///< `[patch]`: that it needs for itself
   std::vector<float> bounds = {};               ///< `[patch]`
   std::vector<float> angles = {}, pixels = {};  ///< `[patch]`; empty if no angle, or no pixels, were set
   std::vector<std::uint8_t> straddles =
-      {};                                  ///< `[patch]`: 1 if its bounds hold across its middle too; empty if for none
-  std::vector<std::uint32_t> beyond = {};  ///< patches whose bounds exceed the limits, by growing patch
+      {};  ///< `[patch]`: 1 if its bounds hold across its middle too; empty if for none
 
   // By divide_patches():
   std::vector<Division> divisions = {};  ///< `[patch]`; those of cut patches are empty but for the borders' segments
-  std::vector<LinePatch> lines = {};
-  std::uint32_t open_edges = 0;  ///< edges of triangles on borders that no other border is joined to
+  std::uint32_t open_edges = 0;          ///< edges of triangles on borders that no other border is joined to
 
-  // By FaceCutter:
-  std::shared_ptr<const PatchTrims> trims = {};  ///< those of the set
-  std::vector<CutPatch> cuts = {};               ///< the patches that loops cut, by growing patch
-  std::vector<std::uint32_t> crossed = {};       ///< cut patches without triangles, because their chords cross
-
-  // By close_faces():
-  std::optional<ClosedEdges> closed = {};  ///< the vertices that faces share along edges; none if the set has no edges
+  bool has_f64_positions =
+      false;  ///< whether the mesh has positions in double: then all RarePatches::f64_patches are 1
+  RareSlot rare = {};
 };
 
 /// The divided patches of a mesh, and where its vertices and triangles lie. Borders and corners are numbered, as in
@@ -65,10 +86,12 @@ class CertifiedPlan {
   const DividedPatches& patches() const { return patches_; }
   std::size_t patch_count() const { return patches_.divisions.size(); }
   const Division& division(std::size_t patch) const { return patches_.divisions[patch]; }
-  std::span<const CutPatch> cuts() const { return patches_.cuts; }
+  std::span<const CutPatch> cuts() const { return patches_.rare->cuts; }
   /// The vertices that faces share along edges; null if the set has no edges.
-  const ClosedEdges* closed() const { return patches_.closed ? &*patches_.closed : nullptr; }
-  bool is_f64(std::size_t patch) const { return !patches_.f64_patches.empty() && patches_.f64_patches[patch]; }
+  const ClosedEdges* closed() const { return patches_.rare->closed ? &*patches_.rare->closed : nullptr; }
+  bool is_f64(std::size_t patch) const {
+    return !patches_.rare->f64_patches.empty() && patches_.rare->f64_patches[patch];
+  }
   /// Whether another plan has the same triangles, by the numbers of their vertices.
   bool has_triangles_of(const CertifiedPlan& other) const;
   /// Replaces the bounds of a patch, which keeps its segments; those of angles and pixels if there are any.

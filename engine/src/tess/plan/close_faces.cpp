@@ -25,20 +25,20 @@ std::vector<std::uint8_t> joined_borders(const SharedEdges& edges, const Divided
     for (std::size_t patch = 0; patch < patches.divisions.size(); ++patch)
       for (const Side side : all_sides)
         if (!patches.divisions[patch].empty) visit_side(patch, side);
-    for (const CutPatch& cut : patches.cuts)
+    for (const CutPatch& cut : patches.rare->cuts)
       for (const Side side : all_sides)
         if (cut.is_full[static_cast<std::size_t>(side)]) visit_side(cut.patch, side);
   };
   full_borders([&](std::size_t, std::uint32_t edge) { borders[edge] += borders[edge] < 2; });
   full_borders([&](std::size_t border, std::uint32_t edge) { is_joined[border] = borders[edge] == 2; });
-  for (const CutPatch& cut : patches.cuts)
+  for (const CutPatch& cut : patches.rare->cuts)
     for (std::size_t side = 0; side < 4; ++side) is_joined[4 * cut.patch + side] |= cut.is_shared[side];
   return is_joined;
 }
 
 /// Bounds the cut patches whose triangles closing has divided, and lists those beyond their limits. Returns whether
 /// there are any that cutting them anew may help.
-bool bound_edited(FaceCutter& cutter, DividedPatches& patches) {
+bool bound_edited(FaceCutter& cutter, RarePatches& patches) {
   std::vector<std::uint32_t>& beyond = patches.beyond;
   const std::size_t known = beyond.size();
   for (const std::uint32_t c : patches.closed->edited_cuts) {
@@ -59,6 +59,7 @@ bool bound_edited(FaceCutter& cutter, DividedPatches& patches) {
 Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPatches& patches,
                    const Execution& execution) {
   const PatchSet::Impl& set = facts.needs.set();
+  RarePatches& rare = patches.rare.make();
   std::optional<FaceCutter> cutter;
   if (set.trims) cutter.emplace(facts, request, patches, execution);
   for (int attempt = 0; attempt < max_closings; ++attempt) {
@@ -69,7 +70,7 @@ Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPa
     Result<ClosedEdges> closed = close_edges({.set = set,
                                               .runs = *facts.faces.runs,
                                               .divisions = patches.divisions,
-                                              .cuts = patches.cuts,
+                                              .cuts = rare.cuts,
                                               .stations = cutter ? cutter->stations() : nullptr,
                                               .is_joined = is_joined,
                                               .chord = chord,
@@ -77,10 +78,10 @@ Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPa
                                               .same_share = same_share(set, request.tolerance),
                                               .cancel = execution.cancel});
     if (!closed) return closed.status();
-    patches.closed = *std::move(closed);
+    rare.closed = *std::move(closed);
     patches.open_edges = static_cast<std::uint32_t>(
-        std::max(std::int64_t{0}, std::int64_t{patches.open_edges} - patches.closed->closed_segments));
-    if (!cutter || !bound_edited(*cutter, patches)) break;
+        std::max(std::int64_t{0}, std::int64_t{patches.open_edges} - rare.closed->closed_segments));
+    if (!cutter || !bound_edited(*cutter, rare)) break;
   }
   return {};
 }

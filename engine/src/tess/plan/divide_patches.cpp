@@ -162,7 +162,7 @@ void keep_from_vanishing(const PlanFacts& facts, DividedPatches& patches) {
   for (std::uint32_t k = 0; k < divisions.size(); ++k)
     if (const Division& of = divisions[k]; of.collapsed.any() && !of.empty && of.triangle_count() == 0)
       without.push_back(k);
-  patches.lines.clear();
+  if (!patches.rare->lines.empty()) patches.rare.make().lines.clear();
   if (without.empty()) return;
   std::vector<std::uint32_t> holders(edges.count(), no_id);  // `[edge]`: a patch with triangles
   for (std::uint32_t k = 0; k < divisions.size(); ++k)
@@ -176,7 +176,7 @@ void keep_from_vanishing(const PlanFacts& facts, DividedPatches& patches) {
     if (holder == no_id && !is_welded_spot(facts.needs, k, patches)) {
       divisions[k].add_inner_points(patches.segments[k]);
     } else {
-      patches.lines.push_back({k, holder});
+      patches.rare.make().lines.push_back({k, holder});
     }
   }
 }

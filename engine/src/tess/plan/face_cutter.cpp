@@ -45,14 +45,15 @@ FaceCutter::FaceCutter(const PlanFacts& facts, const PlanRequest& request, Divid
       set_(facts.needs.set()),
       request_(request),
       patches_(patches),
+      rare_(patches.rare.make()),
       quiet_{.cancel = execution.cancel},
       is_shared_(with_two_borders(facts.borders.edges())),
       parts_(set_.trims->cuts.size(), 1),
       shares_(parts_.size(), cell_share),
       excess_(parts_.size(), 0),
       rooms_(parts_.size()) {
-  patches_.trims = set_.trims;
-  patches_.cuts.resize(parts_.size());
+  rare_.trims = set_.trims;
+  rare_.cuts.resize(parts_.size());
   find_same_borders();
 }
 
@@ -99,7 +100,7 @@ FaceCutter::Room FaceCutter::room_of(const CutPatch& cut, double share) const {
 
 Status FaceCutter::find_rooms() {
   const auto find = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) rooms_[c] = room_of(patches_.cuts[c], parts_[c]);
+    for (std::size_t c = begin; c < end; ++c) rooms_[c] = room_of(rare_.cuts[c], parts_[c]);
   };
   return parallel_for(rooms_.size(), rooms_per_task, quiet_, find);
 }
@@ -130,8 +131,8 @@ void FaceCutter::find_same_borders() {
   const SharedEdges& edges = facts_.borders.edges();
   const EdgeDirections directions = facts_.borders.directions(facts_.needs);
   const std::span<const PatchShape> shapes = facts_.borders.shapes(facts_.needs);
-  for (std::size_t c = 0; c < patches_.cuts.size(); ++c) {
-    CutPatch& cut = patches_.cuts[c];
+  for (std::size_t c = 0; c < rare_.cuts.size(); ++c) {
+    CutPatch& cut = rare_.cuts[c];
     cut.patch = set_.trims->cuts[c].patch;
     for (const Side side : all_sides) {
       const std::uint32_t edge = edges.edge(cut.patch, side);
@@ -147,9 +148,9 @@ void FaceCutter::choose_segments() {
   PlanRequest own = request_;
   own.uniform = true;  // triangles of the band may be as wide as the widest cell
   own.fewest = false;
-  for (std::size_t c = 0; c < patches_.cuts.size(); ++c) {
+  for (std::size_t c = 0; c < rare_.cuts.size(); ++c) {
     if (!shares_.is_due(c)) continue;
-    const std::size_t patch = patches_.cuts[c].patch;
+    const std::size_t patch = rare_.cuts[c].patch;
     own.share = shares_.share(c);
     const NeededSegments needed = facts_.needs.segments_for(patch, own, max_rate);
     if (needed.are_found())
@@ -162,7 +163,7 @@ void FaceCutter::choose_segments() {
 double FaceCutter::cut_patch(std::size_t c, CutPatchMaker& maker) {
   const PatchTrims::Cut& cut = set_.trims->cuts[c];
   const CutFaces& faces = facts_.faces;
-  CutPatch& made = patches_.cuts[c];
+  CutPatch& made = rare_.cuts[c];
   Room room = rooms_[c];
   for (const Side side : all_sides) {
     const std::uint32_t edge = facts_.borders.edges().edge(cut.patch, side);
@@ -186,7 +187,7 @@ Status FaceCutter::find_stations(std::vector<std::uint8_t>& is_changed) {
     if (set_.trims->is_cut[patch]) return {};
     return patches_.divisions[patch].border[static_cast<std::size_t>(side)];
   };
-  const std::span<const CutPatch> cuts = patches_.cuts;
+  const std::span<const CutPatch> cuts = rare_.cuts;
   const auto limits = [&](std::uint32_t patch) -> const ChordLimits& {
     return of_cuts[static_cast<std::size_t>(find_cut(cuts, patch) - cuts.data())];
   };
@@ -209,16 +210,16 @@ Status FaceCutter::find_stations(std::vector<std::uint8_t>& is_changed) {
 }
 
 Status FaceCutter::cut() {
-  patches_.crossed.clear();
-  std::erase_if(patches_.beyond, [this](std::uint32_t patch) { return set_.trims->is_cut[patch]; });
+  rare_.crossed.clear();
+  std::erase_if(rare_.beyond, [this](std::uint32_t patch) { return set_.trims->is_cut[patch]; });
   for (int attempt = 0; attempt < max_cuts && shares_.is_any_due(); ++attempt)
     if (Status status = cut_once(); !status.ok()) return status;
   count_open_edges();
-  for (std::size_t c = 0; c < patches_.cuts.size(); ++c) {
-    if (patches_.cuts[c].is_crossed) patches_.crossed.push_back(patches_.cuts[c].patch);
-    if (shares_.is_beyond(c)) patches_.beyond.push_back(patches_.cuts[c].patch);
+  for (std::size_t c = 0; c < rare_.cuts.size(); ++c) {
+    if (rare_.cuts[c].is_crossed) rare_.crossed.push_back(rare_.cuts[c].patch);
+    if (shares_.is_beyond(c)) rare_.beyond.push_back(rare_.cuts[c].patch);
   }
-  std::ranges::sort(patches_.beyond);
+  std::ranges::sort(rare_.beyond);
   return {};
 }
 
@@ -227,7 +228,7 @@ std::vector<std::uint8_t> FaceCutter::divide() {
   divide_patches(facts_, request_.tolerance, patches_);
   std::vector<std::uint8_t> is_changed(patches_.divisions.size(), before.empty());
   for (std::size_t k = 0; k < before.size(); ++k) is_changed[k] = !(before[k] == patches_.divisions[k]);
-  for (std::size_t c = 0; c < patches_.cuts.size(); ++c) is_changed[patches_.cuts[c].patch] |= shares_.is_due(c);
+  for (std::size_t c = 0; c < rare_.cuts.size(); ++c) is_changed[rare_.cuts[c].patch] |= shares_.is_due(c);
   return is_changed;
 }
 
@@ -237,7 +238,7 @@ Status FaceCutter::cut_once() {
   if (Status status = find_rooms(); !status.ok()) return status;
   if (facts_.faces.runs)
     if (Status status = find_stations(is_changed); !status.ok()) return status;
-  const std::vector<CutPatch>& cuts = patches_.cuts;
+  const std::vector<CutPatch>& cuts = rare_.cuts;
   const auto cut_some = [&](std::size_t begin, std::size_t end) {
     const auto maker = makers_.take();
     for (std::size_t c = begin; c < end; ++c)
@@ -252,7 +253,7 @@ Status FaceCutter::cut_once() {
   return check_triangles();
 }
 
-double FaceCutter::bound_edited(std::size_t c) { return bound(room_of(patches_.cuts[c], 1), patches_.cuts[c]); }
+double FaceCutter::bound_edited(std::size_t c) { return bound(room_of(rare_.cuts[c], 1), rare_.cuts[c]); }
 
 void FaceCutter::cut_again(std::size_t c, double factor) {
   shares_.restart(c, factor);
@@ -262,7 +263,7 @@ void FaceCutter::cut_again(std::size_t c, double factor) {
 // Later attempts have more triangles.
 Status FaceCutter::check_triangles() const {
   std::uint64_t triangles = 0;
-  for (const CutPatch& cut : patches_.cuts) triangles += cut.triangles.size();
+  for (const CutPatch& cut : rare_.cuts) triangles += cut.triangles.size();
   if (triangles <= max_while_cutting(request_.max_triangles)) return {};
   return too_many_of_cuts(facts_.needs.options(), request_, triangles);
 }
@@ -278,7 +279,7 @@ void FaceCutter::count_open_edges() {
     for (std::size_t patch = 0; patch < patches_.divisions.size(); ++patch)
       for (const Side side : all_sides)
         if (!patches_.divisions[patch].empty) visit_border(patch, side, visit);
-    for (const CutPatch& cut : patches_.cuts)
+    for (const CutPatch& cut : rare_.cuts)
       for (const Side side : all_sides)
         if (!cut.is_crossed && cut.is_full[static_cast<std::size_t>(side)]) visit_border(cut.patch, side, visit);
   };
@@ -287,7 +288,7 @@ void FaceCutter::count_open_edges() {
   for_borders([&](std::uint32_t edge, int rate) {
     if (borders[edge] == 1) patches_.open_edges += static_cast<std::uint32_t>(rate);
   });
-  for (const CutPatch& cut : patches_.cuts) patches_.open_edges += cut.open_edges;
+  for (const CutPatch& cut : rare_.cuts) patches_.open_edges += cut.open_edges;
 }
 
 }}  // namespace tessera::abi_0_1

@@ -77,6 +77,7 @@ class FaceCutter {
   const PatchSet::Impl& set_;
   const PlanRequest& request_;
   DividedPatches& patches_;
+  RarePatches& rare_;                    ///< those of patches_
   Execution quiet_;                      ///< the caller's flag to cancel alone
   std::vector<std::uint8_t> is_shared_;  ///< `[edge]`: whether two borders or more have it
   std::vector<double> parts_;            ///< by cut patch: the part of the tolerance that it may take

@@ -11,7 +11,8 @@ namespace tessera { inline namespace abi_0_1 {
 Result<CertifiedPlan> make_plan(const PlanFacts& facts, const PlanRequest& request, const Execution& execution) {
   const PlannerOptions& options = facts.needs.options();
   const bool is_cut = facts.needs.set().trims != nullptr;
-  DividedPatches patches{.f64_patches = options.f64_patches, .has_f64_positions = options.f64_positions};
+  DividedPatches patches{.has_f64_positions = options.f64_positions};
+  if (!options.f64_patches.empty()) patches.rare.make().f64_patches = options.f64_patches;
   if (Status status = choose_rates(facts, request, patches, execution); !status.ok()) return status;
   if (!is_cut) divide_patches(facts, request.tolerance, patches);
   if (facts.faces.runs) {

@@ -53,7 +53,7 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
                                               const Execution& execution) {
   facts_.needs.follow(of.set);
   is_redivided_ = false;
-  is_unknown_ = moves_line_patches(of) || !of.plan.patches().beyond.empty();
+  is_unknown_ = moves_line_patches(of) || !of.plan.patches().rare->beyond.empty();
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (const std::uint32_t block : std::span(touched_.blocks).subspan(begin, end - begin)) {
       pack(block);
@@ -76,7 +76,7 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
 }
 
 bool PlanUpdate::moves_line_patches(const PlanOfSet& of) const {
-  return std::ranges::any_of(of.plan.patches().lines, [&](const DividedPatches::LinePatch& line) {
+  return std::ranges::any_of(of.plan.patches().rare->lines, [&](const RarePatches::LinePatch& line) {
     return line.holder == no_id || is_touched(of.set, line.patch) || is_touched(of.set, line.holder);
   });
 }
@@ -208,13 +208,13 @@ void PlanUpdate::take_bounds(CertifiedPlan& plan) const {
 
 CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
   const DividedPatches& before = of.plan.patches();
-  DividedPatches patches{.f64_patches = before.f64_patches,
-                         .has_f64_positions = before.has_f64_positions,
-                         .segments = before.segments,
+  DividedPatches patches{.segments = before.segments,
                          .bounds = before.bounds,
                          .angles = before.angles,
                          .pixels = before.pixels,
-                         .straddles = before.straddles};
+                         .straddles = before.straddles,
+                         .has_f64_positions = before.has_f64_positions};
+  if (!before.rare->f64_patches.empty()) patches.rare.make().f64_patches = before.rare->f64_patches;
   for_proven(of.set, [&](std::size_t patch) {
     const Proven& proven = proven_[patch];
     patches.segments[patch] = proven.segments;

@@ -114,9 +114,9 @@ Status choose_one_by_one(const PatchNeeds& needs, const PlanRequest& request, Di
 Status keep_beyond(const PlanFacts& facts, const PlanRequest& request, std::span<const std::uint8_t> is_beyond,
                    DividedPatches& patches) {
   for (std::uint32_t patch = 0; patch < is_beyond.size(); ++patch)
-    if (is_beyond[patch]) patches.beyond.push_back(patch);
-  if (patches.beyond.empty() || patches.beyond.size() < is_beyond.size()) return {};
-  return refusal(facts, request, patches.beyond.front());
+    if (is_beyond[patch]) patches.rare.make().beyond.push_back(patch);
+  const std::vector<std::uint32_t>& beyond = patches.rare->beyond;
+  return beyond.empty() || beyond.size() < is_beyond.size() ? Status() : refusal(facts, request, beyond.front());
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ Result<double> smallest_tolerance(const PlanFacts& facts, std::uint64_t max_tria
     const PlanRequest request{.tolerance = tolerance_of(step), .fewest = is_fewest, .max_triangles = max_of_patch};
     const Result<CertifiedPlan> plan = make_leaner_plan(facts, request, execution);
     if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
-    if (!plan || !plan->patches().beyond.empty()) return Fit{};
+    if (!plan || !plan->patches().rare->beyond.empty()) return Fit{};
     const MeshCapacity size = plan->capacity();
     return Fit{size.triangles <= max_triangles && size.vertices <= max_vertices,
                least_triangles(*plan) <= max_triangles};

@@ -32,7 +32,7 @@ PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, c
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
   const bool large = stores == Stores::streaming || (stores == Stores::automatic && *bytes > streaming_threshold());
-  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && plan.patches().f64_patches.empty() &&
+  streaming_ = large && kernels.finish_lines && !plan.shares_vertices() && plan.patches().rare->f64_patches.empty() &&
                plan.cuts().empty() && !plan.closed() && out.quads.empty() && is_packed(out.position) &&
                (out.normal.empty() || is_packed(out.normal));
 }
