@@ -74,7 +74,7 @@ class Patch:
 
 
 class PatchSetBase(Handle):
-    """What a PatchSet does without its Model."""
+    """The calls of a PatchSet that need no Model."""
 
     _kind = "set"
 

@@ -147,7 +147,7 @@ class _Rays:
 
 
 class SceneBase(Handle):
-    """What a Scene does without its PatchSet."""
+    """The calls of a Scene that need no PatchSet."""
 
     _kind = "scene"
 

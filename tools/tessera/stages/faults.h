@@ -1,5 +1,5 @@
 #pragma once
-// What a mesh lacks of the file's faces: warnings, and errors with --strict.
+// The faces of a file that its mesh lacks: warnings, and errors with --strict.
 
 #include <string>
 #include <vector>

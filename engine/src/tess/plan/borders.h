@@ -1,5 +1,5 @@
 #pragma once
-// What the patches of a set agree on along their borders, whatever the tolerance is.
+// The facts that neighbouring patches share along their borders, whatever the tolerance is.
 
 #include <cstdint>
 #include <span>

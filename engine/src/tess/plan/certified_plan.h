@@ -20,7 +20,7 @@ namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  ///< the limit of 32-bit indices
 
-/// What few plans have, and what takes memory of its own there.
+/// The data that few plans have. It takes memory of its own there.
 struct RarePatches {
   /// A patch of an area without triangles: opposite borders are points, and the line between them is the border of
   /// another, or a point that another has.

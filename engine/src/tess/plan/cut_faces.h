@@ -11,7 +11,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// What cutting and closing take from the set's loops, whatever the tolerance is.
+/// The facts that cutting and closing take from the set's loops, whatever the tolerance is.
 struct CutFaces {
   /// `closes_edges`: whether faces are to get the same vertices along edges. The set must outlive the result.
   static CutFaces of(const PatchSet::Impl& set, bool closes_edges);

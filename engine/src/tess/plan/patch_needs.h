@@ -1,5 +1,5 @@
 #pragma once
-// What each patch of a set needs by itself to keep the limits, whatever its neighbours need.
+// The segments that each patch of a set needs by itself to keep the limits, whatever its neighbours need.
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// What a plan is asked for.
+// The limits that a plan keeps, and how borders are joined.
 
 #include <cstdint>
 #include <limits>
