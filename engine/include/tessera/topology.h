@@ -17,8 +17,8 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// Checks all ids of a model, of vertices, edges, faces, solids, shapes, and the surfaces of instances; positions,
 /// ranges and tolerances must be finite. Each loop must have one coedge per curve, or none. A coedge's parameter must
-/// be monotone, in the coedge's direction, stated for the edge's range, and within the curve's domain there. Calls
-/// below may be made after this check succeeds.
+/// be monotone, in the coedge's direction, stated for the edge's range, and within the curve's domain there. edge_uses(),
+/// closed_shells() and edge_gaps() make this check of their shape.
 ///
 /// Errors: invalid_argument, as "shape 2 (nut): edge 7 ends at vertex 12, there are 12 vertices" (index = the shape or
 /// instance).
@@ -55,18 +55,17 @@ struct EdgeUses {
     return std::span(uses).subspan(first[edge], first[edge + 1] - first[edge]);
   }
 };
-/// Lists the coedges of each edge. Requires a shape that passes check_topology(). Errors: invalid_argument (an edge or a
-/// face that the shape does not have), out_of_memory.
+/// Lists the coedges of each edge. Errors: those of check_topology(), out_of_memory.
 Result<EdgeUses> edge_uses(const Shape& shape);
 
 /// Tells for each shell whether it is closed: each edge of its faces, save degenerate ones, has an even number of
-/// coedges in them. A shell without faces, or with a face that names no edges, is not. Requires a
-/// shape that passes check_topology(). Errors: those of edge_uses().
+/// coedges in them. A shell without faces, or with a face that names no edges, is not.
+/// Errors: those of edge_uses().
 Result<std::vector<bool>> closed_shells(const Shape& shape);
 
 /// Measures for each edge the largest distance of two faces' points at equal parameters of the edge, at both ends and
 /// `samples` - 2 parameters evenly between. 0 for an edge of one coedge. A measurement, not a bound; lengths are those
-/// of the shape's space. Requires a shape that passes check_topology().
+/// of the shape's space.
 ///
 /// Errors: invalid_argument (fewer than two samples), those of edge_uses() and evaluate_jet().
 Result<std::vector<double>> edge_gaps(const Shape& shape, int samples = 9);

@@ -191,34 +191,11 @@ void for_each_coedge(const Shape& shape, std::uint32_t face, Use use) {
       use(loops[loop].coedges[curve].edge, EdgeUse{face, loop, curve});
 }
 
-/// Checks that faces name edges, and shells faces, that the shape has.
-Status check_edge_ids(const Shape& shape) {
-  for (std::uint32_t face = 0; face < shape.faces.size(); ++face) {
-    std::uint32_t largest = 0;
-    bool is_any = false;
-    for_each_coedge(shape, face, [&](std::uint32_t edge, const EdgeUse&) {
-      largest = std::max(largest, edge);
-      is_any = true;
-    });
-    if (is_any && largest >= shape.edges.size())
-      return Status(
-          StatusCode::invalid_argument,
-          item("face", face) + " names " + item("edge", largest) + there_are(shape.edges.size(), "edge", "edges"),
-          static_cast<std::ptrdiff_t>(face));
-  }
-  for (std::size_t shell = 0; shell < shape.shells.size(); ++shell)
-    for (const std::uint32_t face : shape.shells[shell].faces)
-      if (face >= shape.faces.size())
-        return Status(StatusCode::invalid_argument,
-                      "a shell names " + item("face", face) + there_are(shape.faces.size(), "face", "faces"));
-  return {};
-}
-
 }  // namespace
 
 Result<EdgeUses> edge_uses(const Shape& shape) {
   return guarded([&]() -> Result<EdgeUses> {
-    if (Status status = check_edge_ids(shape); !status.ok()) return status;
+    if (Status status = check_topology(shape); !status.ok()) return status;
     EdgeUses all;
     all.first.assign(shape.edges.size() + 1, 0);
     const auto faces = static_cast<std::uint32_t>(shape.faces.size());
@@ -235,7 +212,7 @@ Result<EdgeUses> edge_uses(const Shape& shape) {
 
 Result<std::vector<bool>> closed_shells(const Shape& shape) {
   return guarded([&]() -> Result<std::vector<bool>> {
-    if (Status status = check_edge_ids(shape); !status.ok()) return status;
+    if (Status status = check_topology(shape); !status.ok()) return status;
     std::vector<bool> closed, odd(shape.edges.size());
     for (const Shell& shell : shape.shells) {
       bool named = !shell.faces.empty();
