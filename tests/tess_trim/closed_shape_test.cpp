@@ -41,6 +41,12 @@ TEST(ClosedShape, DrilledPlateIsClosedAtAnyTolerance) {
 TEST(ClosedShape, OneCallMakesAClosedMesh) {
   const Mesh mesh = value_of(tessera::tessellate(joined(drilled_plate(), 1e-6), {.tolerance = 1e-3}));
   EXPECT_TRUE(value_of(check(mesh)).closed());
+  EXPECT_EQ(mesh.parts.size(), drilled_plate().size());
+  Shape broken = joined(drilled_plate(), 1e-6);
+  std::vector<TrimLoop> loops = *broken.faces[0].trims;
+  loops[0].curves[0] = space_line({0, 0, 0}, {1e101, 0, 0});
+  broken.faces[0].trims = std::move(loops);
+  EXPECT_EQ(tessera::tessellate(broken, {.tolerance = 1e-3}).status().index(), 0);
 }
 
 /// Distances of the mesh's points from the plate's faces, in closed form, for each triangle and its face.

@@ -27,7 +27,7 @@ Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, 
 Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& options, const Execution& execution = {});
 /// Makes the mesh of a shape in one call, from make_patch_set(), with parts_by_face(). Along the edges that faces share
 /// it is closed, unless TessellationOptions::close_edges is false. Errors: those of these calls, as for a set;
-/// invalid_argument (loops of a face cannot be used: PatchSet::trim_faults(); index = the face).
+/// the first of PatchSet::trim_faults(), for loops that cannot be used (index = the face).
 Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution = {});
 
 }}  // namespace tessera::abi_0_1

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "base/function_ref.h"
 #include "base/text.h"
 #include "tessera/guard.h"
 
@@ -13,6 +14,14 @@ Status refusal(std::span<const std::uint32_t> patches, const char* fault) {
   return {StatusCode::invalid_argument,
           counted(patches.size(), "patch", "patches") + " " + fault + ": a Tessellation has the mesh and its bounds",
           static_cast<std::ptrdiff_t>(patches.front())};
+}
+
+Result<Mesh> with_parts(Result<Mesh> mesh, FunctionRef<Result<std::vector<MeshPart>>(const Mesh&)> parts_of) {
+  if (!mesh) return mesh;
+  Result<std::vector<MeshPart>> parts = parts_of(*mesh);
+  if (!parts) return parts.status();
+  mesh->parts = *std::move(parts);
+  return mesh;
 }
 
 }  // namespace
@@ -33,12 +42,8 @@ Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options,
 Result<Mesh> tessellate(const Model& model, const TessellationOptions& options, const Execution& execution) {
   const Result<PatchSet> set = make_patch_set(model);
   if (!set) return set.status();
-  Result<Mesh> mesh = tessellate(*set, options, execution);
-  if (!mesh) return mesh;
-  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, *set, model);
-  if (!parts) return parts.status();
-  mesh->parts = *std::move(parts);
-  return mesh;
+  const auto parts = [&](const Mesh& mesh) { return parts_by_surface(mesh, *set, model); };
+  return with_parts(tessellate(*set, options, execution), parts);
 }
 
 Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& options, const Execution& execution) {
@@ -52,14 +57,9 @@ Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& optio
 Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution) {
   const Result<PatchSet> set = make_patch_set(shape);
   if (!set) return set.status();
-  if (const std::span<const Status> faults = set->trim_faults(); !faults.empty())
-    return Status(StatusCode::invalid_argument, faults.front().message(), faults.front().index());
-  Result<Mesh> mesh = tessellate(*set, options, execution);
-  if (!mesh) return mesh;
-  Result<std::vector<MeshPart>> parts = parts_by_face(*mesh, *set, shape);
-  if (!parts) return parts.status();
-  mesh->parts = *std::move(parts);
-  return mesh;
+  if (const std::span<const Status> faults = set->trim_faults(); !faults.empty()) return faults.front();
+  const auto parts = [&](const Mesh& mesh) { return parts_by_face(mesh, *set, shape); };
+  return with_parts(tessellate(*set, options, execution), parts);
 }
 
 }}  // namespace tessera::abi_0_1
