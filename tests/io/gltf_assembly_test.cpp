@@ -179,7 +179,7 @@ TEST_P(GltfAssembly, EveryCornerIsReadBackWhereItStands) {
                                       {.name = "sheared", .shape = 1, .placement = sheared},
                                       {.name = "point", .shape = 2, .placement = turned}}};
   for (const auto& [unit, metre] :
-       {std::pair{"", 1.0}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}, {"cubit", 1.0}}) {
+       {std::pair{"", 1.0}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}, {"in", 0.0254}}) {
     assembly.unit = unit;
     const tinygltf::Model model = written(assembly);
     EXPECT_EQ(model.nodes.at(0).scale, metre == 1 ? std::vector<double>{} : std::vector<double>(3, metre));
@@ -198,6 +198,10 @@ TEST_P(GltfAssembly, EveryCornerIsReadBackWhereItStands) {
     EXPECT_EQ(back.parts[2].name, "mirrored");
     EXPECT_EQ(back.parts[3].triangle_count, 20u);  // two primitives
   }
+  assembly.unit = "cubit";
+  const Status status = write_assembly(assembly, path());
+  EXPECT_EQ(status.code(), StatusCode::unsupported);
+  EXPECT_NE(status.message().find("unit \"cubit\" is not known"), std::string::npos) << status.message();
 }
 
 TEST_P(GltfAssembly, FarPartsKeepTheirPrecision) {

@@ -137,8 +137,8 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 /// glTF, whose positions are relative to the origin, if they are in float. 2^-24 of the largest coordinate comes from
 /// rounding to float. Errors: none. Other extensions count as files of floats, like those of mesh_pieces.h.
 double file_rounding(const Mesh& mesh, const std::filesystem::path& path);
-/// Returns file_rounding() of any mesh with this origin, whose positions relative to it have |x|, |y| and |z| of at most
-/// `reach`. `has_doubles`: whether it has positions in double.
+/// Returns file_rounding() of any mesh with this origin, whose positions relative to it have |x|, |y| and |z| of at
+/// most `reach`. `has_doubles`: whether it has positions in double.
 double file_rounding(const std::filesystem::path& path, const Vec3& origin, const Vec3& reach, bool has_doubles);
 
 /// Writes the meshes of an assembly in a format of write_mesh(). The file appears whole or not at all.
@@ -146,12 +146,13 @@ double file_rounding(const std::filesystem::path& path, const Vec3& origin, cons
 /// - .glb and .gltf: each shape is stored once, and each instance is a node with its name and placement. Colours become
 ///   materials: a mesh has one primitive per colour of its parts. Positions are relative to each mesh's origin, which
 ///   the node adds. The unit of glTF is the metre: the node above all others scales by 0.001 if the assembly's unit is
-///   "mm"; "um", "cm", "m", "km", "inch" and "ft" are known too, and any other unit counts as metres. Instances that
-///   are sheared have a mesh of their own, because nodes cannot shear.
+///   "mm"; "um", "cm", "m", "km", "in", "inch" and "ft" are known too, and no unit counts as metres. Instances that are
+///   sheared have a mesh of their own, because nodes cannot shear.
 /// - other formats: one mesh, as flatten() makes it, in the assembly's unit; colours are not kept.
 ///
 /// Errors: those of write_mesh() (index = the shape); invalid_argument (an instance of no shape, a colour beyond 0 to
-/// 1; index = the instance), non_finite (a placement that is not finite, or beyond the range of float).
+/// 1; index = the instance), non_finite (a placement that is not finite, or beyond the range of float), unsupported
+/// (glTF in any other unit).
 Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path);
 
 /// How read_mesh() treats polygons, and where it reports what it skips.
@@ -165,8 +166,8 @@ struct MeshReadOptions {
 ///   where their bits are equal.
 /// - .glb and .gltf: glTF 2.0, all triangles of the default scene, placed by its nodes; the translation of the first
 ///   mesh is the origin. Normals and texture coordinates are kept if all triangles have them. Buffers may lie in files
-///   beside the file or below, but not behind symbolic links out of its folder. Sparse and compressed accessors are errors; points, lines, skins, morph targets and
-///   animations are skipped with a warning.
+///   beside the file or below, but not behind symbolic links out of its folder. Sparse and compressed accessors are
+///   errors; points, lines, skins, morph targets and animations are skipped with a warning.
 ///
 /// Errors: io_error, parse_error, unsupported. Memory: for glTF at most 64 times the file and its buffers plus 16 MiB,
 /// however often nodes place a mesh.

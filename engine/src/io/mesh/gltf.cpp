@@ -164,12 +164,13 @@ bool needs_preparation(const MeshAssembly& assembly) {
                               [](const MeshInstance& instance) { return fits_node(instance.placement); });
 }
 
-/// The metres of a unit; 1 for unknown ones.
+/// The metres of a unit, 1 if it is empty; 0 for unknown ones.
 double metres(const std::string& unit) {
-  static const std::map<std::string, double> units{{"um", 1e-6}, {"mm", 1e-3},     {"cm", 1e-2},  {"m", 1},
-                                                   {"km", 1e3},  {"inch", 0.0254}, {"ft", 0.3048}};
+  static const std::map<std::string, double> units{{"", 1},        {"um", 1e-6},     {"mm", 1e-3},
+                                                   {"cm", 1e-2},   {"m", 1},         {"km", 1e3},
+                                                   {"in", 0.0254}, {"inch", 0.0254}, {"ft", 0.3048}};
   const auto known = units.find(unit);
-  return known == units.end() ? 1 : known->second;
+  return known == units.end() ? 0 : known->second;
 }
 
 /// Adds all shapes that have instances with triangles, each once, and a node for each instance.
@@ -207,6 +208,9 @@ class AssemblyContent {
 
 /// One mesh for each shape and colour of instances, all of which share the shape's vertices and indices.
 Status write(const MeshAssembly& assembly, OutputFile& out, bool binary) {
+  if (metres(assembly.unit) == 0)
+    return {StatusCode::unsupported, "glTF is in metres, and the unit " + quote(assembly.unit) +
+                                         " is not known; known: um, mm, cm, m, km, in (inch), ft"};
   if (needs_preparation(assembly)) {
     MeshAssembly prepared = assembly;
     const Status status = prepare(prepared);
