@@ -5,6 +5,7 @@
 //
 // Threads: any number of calls at once on const objects.
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -62,8 +63,10 @@ class [[nodiscard]] Status {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : value_(std::move(value)) {}          ///< success
-  Result(Status status) : status_(std::move(status)) {}  ///< failure; `status` must not be ok
+  Result(T value) : value_(std::move(value)) {}         ///< success
+  Result(Status status) : status_(std::move(status)) {  ///< failure; `status` must not be ok
+    assert(!status_.ok());
+  }
 
   bool ok() const { return value_.has_value(); }
   explicit operator bool() const { return ok(); }
