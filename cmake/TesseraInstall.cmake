@@ -87,7 +87,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/engine/include/tessera DESTINATION ${CMA
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME tessera)
 # Every installed text may name these, and no other page.
 set(doc_dir ${CMAKE_INSTALL_DATAROOTDIR}/doc/tessera)
-install(FILES ${PROJECT_SOURCE_DIR}/tools/models/FORMAT.md ${PROJECT_SOURCE_DIR}/tools/models/gallery.jpg DESTINATION ${doc_dir})
+install(FILES ${PROJECT_SOURCE_DIR}/tools/models/FORMAT.md ${PROJECT_SOURCE_DIR}/engine/docs/meshes.md
+  ${PROJECT_SOURCE_DIR}/tools/models/gallery.jpg DESTINATION ${doc_dir})
 if(TESSERA_BUILD_TOOLS)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/tessera/JSON.md DESTINATION ${doc_dir})
   install(TARGETS tessera_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

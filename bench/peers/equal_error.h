@@ -16,8 +16,8 @@ struct PartOptions {
   double angle = 0.5;                         ///< OpenCASCADE's angular deflection, radians
 };
 
-/// Prints a line for each file, and the medians and the ends of the ratios. Each file is read and meshed in a process of
-/// its own, since some files crash OpenCASCADE or do not end; such a file has a line that says so.
+/// Prints a line for each file, and the medians and the ends of the ratios. Each file is read and meshed in a process
+/// of its own, since some files crash OpenCASCADE or do not end; such a file has a line that says so.
 void compare_parts(const PartOptions& options);
 
 }  // namespace tessera::bench

@@ -140,7 +140,7 @@ class Comparison {
       : case_(read_case(file)),
         set_(value_of(make_patch_set(case_.model))),
         scene_(value_of(RayScene::make(set_))),
-        faces_(value_of(RayScene::make(set_, {.seams = false}))) {}
+        faces_(value_of(RayScene::make(set_, {.edges = false}))) {}
 
   Row run(std::size_t count) {
     const std::vector<Ray> rays = rays_at(scene_.box(), count);
@@ -168,7 +168,7 @@ class Comparison {
   /// The hits of a ray. If it passes an edge, all() moves it aside; its hits are then those of the ray where it is.
   std::vector<FaceHit> hits(const Ray& ray, std::span<const Hit> found, const Hit& nearest) const {
     HitLists unmoved;
-    if (nearest.flags.seam || found.empty() || found[0].flags.seam) {
+    if (nearest.flags.edge || found.empty() || found[0].flags.edge) {
       if (!faces_.all(std::span(&ray, 1), unmoved).ok()) throw std::runtime_error("a ray failed");
       found = unmoved.hits;
     }

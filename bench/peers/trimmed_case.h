@@ -23,8 +23,8 @@ struct TrimmedCase {
   std::size_t trimmed_faces() const;
 };
 
-/// Reads a file and checks that surfaces and faces have the same points. `expands`: whether instances get faces of their
-/// own; otherwise `shape` is `as_read`. Throws std::runtime_error, Standard_Failure.
+/// Reads a file and checks that surfaces and faces have the same points. `expands`: whether instances get faces of
+/// their own; otherwise `shape` is `as_read`. Throws std::runtime_error, Standard_Failure.
 TrimmedCase read_case(const std::filesystem::path& file, bool expands = true);
 
 }  // namespace tessera::bench

@@ -1,4 +1,5 @@
-// A model meshed in parts, one after the other in this process, beside the model meshed whole: times, and the same bytes.
+// A model meshed in parts, one after the other in this process, beside the model meshed whole: times, and the same
+// bytes.
 //
 //   tessera_parts_report [SIDE] [TRIES]   a sheet of SIDE x SIDE patches (400), the best of TRIES (5)
 

@@ -1,9 +1,9 @@
 // Casts rays through the closed solids of files, half of them aimed at edges and vertices. Prints a row for each solid:
-// patches; the largest gap, as a share of the size; rays, and inside points that some of them begin or end at; rays that
-// pass an edge, and those of them that could not be moved aside; rays with a hit that is flagged uncertified or
-// incomplete, and wrong counts of these; wrong counts of rays with a hit on the very border of a patch. Then the faults:
-// wrong counts of other rays, and of rays that were moved aside; rays between an inside and an outside point that met
-// nothing. Exit status 1 if there is a fault.
+// patches; the largest gap, as a share of the size; rays, and inside points that some of them begin or end at; rays
+// that pass an edge, and those of them that could not be moved aside; rays with a hit that is flagged uncertified or
+// incomplete, and wrong counts of these; wrong counts of rays with a hit on the very border of a patch. Then the
+// faults: wrong counts of other rays, and of rays that were moved aside; rays between an inside and an outside point
+// that met nothing. Exit status 1 if there is a fault.
 
 #include <cstdio>
 #include <filesystem>

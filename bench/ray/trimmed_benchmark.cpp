@@ -1,6 +1,6 @@
-// Exact rays at a surface of 1,600 patches with a hole in each, beside the same rays at the whole surface, in one process
-// by turns: how much more a root costs where loops cut its patch. Hits are compared with those of the whole surface, and
-// holes with their closed form.
+// Exact rays at a surface of 1,600 patches with a hole in each, beside the same rays at the whole surface, in one
+// process by turns: how much more a root costs where loops cut its patch. Hits are compared with those of the whole
+// surface, and holes with their closed form.
 
 #include <benchmark/benchmark.h>
 

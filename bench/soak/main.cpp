@@ -86,8 +86,8 @@ class Work {
 
   void mesh(PatchSet& set) {
     TessellationOptions options{.tolerance = 1e-3 * (1 + static_cast<double>(random_() % 9))};
-    options.share_vertices = random_() % 2 == 0;
-    options.weld = random_() % 2 == 0 ? 1e-6 : 0;
+    options.joining.share_vertices = random_() % 2 == 0;
+    options.joining.weld = random_() % 2 == 0 ? 1e-6 : 0;
     Tessellation plan = value_of(Tessellation::make(set, options));
     Mesh mesh = value_of(plan.allocate());
     need(plan.run(set, mesh.views()));

@@ -251,7 +251,7 @@ static const struct {
     VALUE(TSR_HIT_INCOMPLETE, 8),
     VALUE(TSR_HIT_TANGENTIAL, 16),
     VALUE(TSR_HIT_WITHIN_TOLERANCE, 32),
-    VALUE(TSR_HIT_SEAM, 64),
+    VALUE(TSR_HIT_EDGE, 64),
 };
 
 /* Counts what is not as it was. */

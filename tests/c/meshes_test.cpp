@@ -33,7 +33,7 @@ TEST(CMesh, BytesOfCpp) {
   } cases[] = {{0, {.tolerance = 1e-3}},
                {TSR_PLAN_RELATIVE, {.tolerance = 1e-3, .relative = true}},
                {TSR_PLAN_QUADS, {.tolerance = 1e-3, .quads = true}},
-               {TSR_PLAN_SHARE, {.tolerance = 1e-3, .share_vertices = true}},
+               {TSR_PLAN_SHARE, {.tolerance = 1e-3, .joining = {.share_vertices = true}}},
                {TSR_PLAN_FEWEST, {.tolerance = 1e-3, .fewest = true}}};
   for (const auto& [flags, options] : cases) {
     const Handle<tsr_plan> plan = plan_of(set.get(), 1e-3, flags);

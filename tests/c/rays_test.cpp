@@ -120,7 +120,7 @@ TEST(CRays, FlagsAreTheBitsOfCpp) {
                                             {{.incomplete = true}, TSR_HIT_INCOMPLETE},
                                             {{.tangential = true}, TSR_HIT_TANGENTIAL},
                                             {{.within_tolerance = true}, TSR_HIT_WITHIN_TOLERANCE},
-                                            {{.seam = true}, TSR_HIT_SEAM}};
+                                            {{.edge = true}, TSR_HIT_EDGE}};
   for (const auto& [in_cpp, in_c] : flags) {
     std::uint8_t bits = 0;
     std::memcpy(&bits, &in_cpp, 1);

@@ -58,7 +58,7 @@ TEST(BezierMakers, CylinderHasParallelRulings) {
 TEST(BezierMakers, ConeHasAPole) {
   const Vec3 apex{0, 0, 2};
   const BezierPatch patch = value_of(make_cone(apex, quarter_circle));
-  EXPECT_TRUE(patch.collapsed_edges().has(Edge::u0));
+  EXPECT_TRUE(patch.collapsed_sides().has(Side::u0));
   for (const double u : {0.0, 0.4, 1.0})
     for (int k = 0; k <= 16; ++k) {
       const Vec3 p = reference_position(patch, u, k / 16.0);

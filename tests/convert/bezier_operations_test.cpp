@@ -54,12 +54,12 @@ TEST(BezierCurves, BordersAreThoseOfTheNet) {
       EXPECT_EQ(border->points, line->points);
       EXPECT_EQ(border->weights, line->weights);
     };
-    expect_same(boundary_curve(patch, Edge::u0), v_line(patch, 0));
-    expect_same(boundary_curve(patch, Edge::u1), v_line(patch, 1));
-    expect_same(boundary_curve(patch, Edge::v0), u_line(patch, 0));
-    expect_same(boundary_curve(patch, Edge::v1), u_line(patch, 1));
+    expect_same(boundary_curve(patch, Side::u0), v_line(patch, 0));
+    expect_same(boundary_curve(patch, Side::u1), v_line(patch, 1));
+    expect_same(boundary_curve(patch, Side::v0), u_line(patch, 0));
+    expect_same(boundary_curve(patch, Side::v1), u_line(patch, 1));
     for (int j = 0; j <= patch.degree_v(); ++j)
-      EXPECT_EQ(boundary_curve(patch, Edge::u1)->points[static_cast<std::size_t>(j)], patch.point(patch.degree_u(), j));
+      EXPECT_EQ(boundary_curve(patch, Side::u1)->points[static_cast<std::size_t>(j)], patch.point(patch.degree_u(), j));
   }
 }
 
@@ -168,9 +168,9 @@ TEST(BezierSubdivision, HalvesAreThePatch) {
       const auto [low, high] = value_of(split_v(patch, t));
       expect_part(low, patch, {0, 1, 0, t});
       expect_part(high, patch, {0, 1, t, 1});
-      EXPECT_EQ(value_of(boundary_curve(left, Edge::u1)).points, value_of(boundary_curve(right, Edge::u0)).points);
-      EXPECT_EQ(value_of(boundary_curve(left, Edge::u1)).weights, value_of(boundary_curve(right, Edge::u0)).weights);
-      EXPECT_EQ(value_of(boundary_curve(low, Edge::v1)).points, value_of(boundary_curve(high, Edge::v0)).points);
+      EXPECT_EQ(value_of(boundary_curve(left, Side::u1)).points, value_of(boundary_curve(right, Side::u0)).points);
+      EXPECT_EQ(value_of(boundary_curve(left, Side::u1)).weights, value_of(boundary_curve(right, Side::u0)).weights);
+      EXPECT_EQ(value_of(boundary_curve(low, Side::v1)).points, value_of(boundary_curve(high, Side::v0)).points);
     }
 }
 
@@ -179,10 +179,10 @@ TEST(BezierSubdivision, AtTheEndsOnePartIsTheWhole) {
   for (const BezierPatch& patch : samples(random)) {
     const auto [left, right] = value_of(split_u(patch, 0));
     EXPECT_TRUE(std::equal(right.points().begin(), right.points().end(), patch.points().begin()));
-    EXPECT_TRUE(left.collapsed_edges().has(Edge::v0));
+    EXPECT_TRUE(left.collapsed_sides().has(Side::v0));
     const auto [low, high] = value_of(split_v(patch, 1));
     EXPECT_TRUE(std::equal(low.points().begin(), low.points().end(), patch.points().begin()));
-    EXPECT_TRUE(high.collapsed_edges().has(Edge::u1));
+    EXPECT_TRUE(high.collapsed_sides().has(Side::u1));
   }
 }
 
@@ -196,8 +196,8 @@ TEST(BezierSubdivision, SubPatches) {
     // Two that meet at a line, and the two halves of a half.
     const BezierPatch a = value_of(sub_patch(patch, {0.1, 0.3, 0.2, 0.7})),
                       b = value_of(sub_patch(patch, {0.3, 0.8, 0.2, 0.7}));
-    EXPECT_EQ(value_of(boundary_curve(a, Edge::u1)).points, value_of(boundary_curve(b, Edge::u0)).points);
-    EXPECT_EQ(value_of(boundary_curve(a, Edge::u1)).weights, value_of(boundary_curve(b, Edge::u0)).weights);
+    EXPECT_EQ(value_of(boundary_curve(a, Side::u1)).points, value_of(boundary_curve(b, Side::u0)).points);
+    EXPECT_EQ(value_of(boundary_curve(a, Side::u1)).weights, value_of(boundary_curve(b, Side::u0)).weights);
   }
 }
 
@@ -208,10 +208,10 @@ TEST(BezierSubdivision, PolesStayPoles) {
     for (std::size_t j = 0; j <= 5; ++j) points[j] = {0.1, 0.7, -0.3};
     const BezierPatch patch =
         rational(4, 5, points, with_weights ? random_weights(random, 4, 5, 0.3, 3) : std::vector<double>(30, 1));
-    EXPECT_TRUE(value_of(split_v(patch, 0.3)).first.collapsed_edges().has(Edge::u0));
-    EXPECT_TRUE(value_of(split_u(patch, 0.7)).first.collapsed_edges().has(Edge::u0));
-    EXPECT_TRUE(value_of(sub_patch(patch, {0, 0.3, 0.1, 0.6})).collapsed_edges().has(Edge::u0));
-    EXPECT_TRUE(value_of(elevate_degree(patch, 9, 11)).collapsed_edges().has(Edge::u0));
+    EXPECT_TRUE(value_of(split_v(patch, 0.3)).first.collapsed_sides().has(Side::u0));
+    EXPECT_TRUE(value_of(split_u(patch, 0.7)).first.collapsed_sides().has(Side::u0));
+    EXPECT_TRUE(value_of(sub_patch(patch, {0, 0.3, 0.1, 0.6})).collapsed_sides().has(Side::u0));
+    EXPECT_TRUE(value_of(elevate_degree(patch, 9, 11)).collapsed_sides().has(Side::u0));
   }
 }
 
@@ -311,7 +311,7 @@ TEST(BezierOperations, RefuseBadArguments) {
   }
   expect_refused(sub_patch(patch, {0.5, 0.5, 0, 1}), StatusCode::invalid_argument, -1, "[0.5, 0.5]");
   expect_refused(sub_patch(patch, {0, 1, 0.7, 0.5}), StatusCode::invalid_argument, -1, "[0.7, 0.5]");
-  expect_refused(boundary_curve(patch, static_cast<Edge>(3)), StatusCode::invalid_argument, -1, "u0, u1, v0 or v1");
+  expect_refused(boundary_curve(patch, static_cast<Side>(4)), StatusCode::invalid_argument, -1, "u0, u1, v0 or v1");
   expect_refused(derivative_patch(patch, -1, 0), StatusCode::invalid_argument, -1, "(-1, 0), it must not be negative");
   expect_refused(derivative_patch(fraction, 1, 0), StatusCode::unsupported, -1, "rational");
   expect_refused(elevate_degree(patch, 2, 2), StatusCode::unsupported_degree, -1,

@@ -200,7 +200,7 @@ TEST(Fit, PolesAndSeams) {
       const PatchGrid grid = value_of(to_bezier(surface, {.tolerance = 1e-4, .degree = degree}));
       const Vec3 pole = value_of(surface.position(0, 0));
       for (std::size_t b = 0; b < grid.count_v(); ++b) {
-        EXPECT_TRUE(grid.patch(0, b).collapsed_edges().has(Edge::u0));
+        EXPECT_TRUE(grid.patch(0, b).collapsed_sides().has(Side::u0));
         EXPECT_EQ(grid.patch(0, b).point(0, degree), pole);
       }
       for (std::size_t a = 0; a < grid.count_u(); ++a)

@@ -11,9 +11,9 @@
 namespace tessera::test { namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-constexpr Edge edges[] = {Edge::u0, Edge::u1, Edge::v0, Edge::v1};
+constexpr Side edges[] = {Side::u0, Side::u1, Side::v0, Side::v1};
 
-JoinReport measured(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances = {}) {
+JoinReport measured(const JoinedPatch& p, const JoinedPatch& q, const JoinTolerances& tolerances = {}) {
   return value_of(measure_join(p, q, tolerances));
 }
 
@@ -26,18 +26,18 @@ BezierPatch plane(double s) { return polynomial(1, 1, {{1, 0, 0}, {1, 1, 0}, {1 
 
 TEST(Join, ParabolicCylinderWithPlanes) {
   const BezierPatch cylinder = parabolic_cylinder(), near = plane(1), far = plane(2);
-  const JoinReport c1 = measured({cylinder, Edge::u1}, {near, Edge::u0});
+  const JoinReport c1 = measured({cylinder, Side::u1}, {near, Side::u0});
   EXPECT_EQ(c1.continuity, Continuity::c1);
   EXPECT_EQ(c1.ratio, 1);
   EXPECT_EQ(c1.position_gap, 0);
   EXPECT_EQ(c1.normal_angle, 0);
   EXPECT_EQ(c1.derivative_gap, 0);
-  const JoinReport g1 = measured({cylinder, Edge::u1}, {far, Edge::u0});
+  const JoinReport g1 = measured({cylinder, Side::u1}, {far, Side::u0});
   EXPECT_EQ(g1.continuity, Continuity::g1);
   EXPECT_EQ(g1.ratio, 0.5);
   EXPECT_EQ(g1.derivative_gap, 1);
   // On a domain twice as wide the same patch is C1.
-  EXPECT_EQ(measured({cylinder, Edge::u1}, {far, Edge::u0, {1, 3, 0, 1}}).continuity, Continuity::c1);
+  EXPECT_EQ(measured({cylinder, Side::u1}, {far, Side::u0, {1, 3, 0, 1}}).continuity, Continuity::c1);
 }
 
 TEST(Join, AnyOrientationIsMeasuredTheSame) {
@@ -46,8 +46,8 @@ TEST(Join, AnyOrientationIsMeasuredTheSame) {
     for (int other = 0; other < 8; ++other) {
       const BezierPatch p = reoriented(cylinder, way), q = reoriented(plane(2), other);
       int found = 0;
-      for (const Edge a : edges)
-        for (const Edge b : edges) {
+      for (const Side a : edges)
+        for (const Side b : edges) {
           const JoinReport report = measured({p, a}, {q, b});
           if (report.continuity == Continuity::none) continue;
           ++found;
@@ -89,7 +89,7 @@ TEST(Join, BoundsHoldAndAreSharp) {
     const bool weighted = k % 2;
     const BezierPatch p = weighted ? rational(m, n, a, random_weights(random, m, n, 0.7, 1.4)) : polynomial(m, n, a);
     const BezierPatch q = k % 4 == 1 ? rational(m, l, b, random_weights(random, m, l, 0.7, 1.4)) : polynomial(m, l, b);
-    const JoinReport report = measured({p, Edge::u1}, {q, Edge::u0});
+    const JoinReport report = measured({p, Side::u1}, {q, Side::u0});
     const Sampled seen = sampled(p, q);
     EXPECT_TRUE(report.sharp);
     EXPECT_GE(report.position_gap, seen.gap * (1 - 1e-12));
@@ -113,7 +113,7 @@ TEST(Join, AKinkBetweenSamplesIsSeen) {
     }
   const BezierPatch p = polynomial(1, 3, a), q = polynomial(1, 3, b);
   for (const double v : {0.0, 0.5, 1.0}) EXPECT_LT(length(cross(evaluate_jet(q, 0, v).du, Vec3{1, 0, 0})), 1e-15);
-  const JoinReport report = measured({p, Edge::u1}, {q, Edge::u0});
+  const JoinReport report = measured({p, Side::u1}, {q, Side::u0});
   EXPECT_EQ(report.continuity, Continuity::c0);
   EXPECT_NEAR(report.normal_angle, std::atan(std::sqrt(3) / 6), 1e-3);
 }
@@ -121,13 +121,13 @@ TEST(Join, AKinkBetweenSamplesIsSeen) {
 TEST(Join, FoldsAreNotSmooth) {
   // A patch that folds back over itself: the normals are opposite.
   const BezierPatch p = plane(1), q = polynomial(1, 1, {{2, 0, 0}, {2, 1, 0}, {1, 0, 0}, {1, 1, 0}});
-  const JoinReport report = measured({p, Edge::u1}, {q, Edge::u0});
+  const JoinReport report = measured({p, Side::u1}, {q, Side::u0});
   EXPECT_EQ(report.continuity, Continuity::c0);
   EXPECT_NEAR(report.normal_angle, std::numbers::pi, 1e-12);
   EXPECT_FALSE(report.ratio.has_value());
   const double c = std::cos(2.5), s = std::sin(2.5);
   const BezierPatch bent = polynomial(1, 1, {{2, 0, 0}, {2, 1, 0}, {2 + c, 0, s}, {2 + c, 1, s}});
-  EXPECT_NEAR(measured({p, Edge::u1}, {bent, Edge::u0}).normal_angle, 2.5, 1e-12);
+  EXPECT_NEAR(measured({p, Side::u1}, {bent, Side::u0}).normal_angle, 2.5, 1e-12);
 }
 
 TEST(Join, SphereOctantsJoinSmoothlyThroughThePole) {
@@ -140,21 +140,21 @@ TEST(Join, SphereOctantsJoinSmoothlyThroughThePole) {
     return rational(2, 2, {x, x + y, y, x + z, x + y + z, y + z, z, z, z}, weights);
   };
   const BezierPatch first = octant({1, 0, 0}, {0, 1, 0}), second = octant({0, 1, 0}, {-1, 0, 0});
-  const JoinReport report = measured({first, Edge::v1}, {second, Edge::v0});
+  const JoinReport report = measured({first, Side::v1}, {second, Side::v0});
   EXPECT_EQ(report.continuity, Continuity::c1);
   EXPECT_LT(report.normal_angle, 1e-10);
   EXPECT_LT(report.derivative_gap, 1e-14);
   EXPECT_TRUE(report.sharp);
   ASSERT_TRUE(report.ratio.has_value());
   EXPECT_NEAR(*report.ratio, 1, 1e-14);
-  // The collapsed edges themselves have no tangent along them.
-  EXPECT_NE(measured({first, Edge::u1}, {second, Edge::u1}).continuity, Continuity::g1);
+  // The collapsed sides themselves have no tangent along them.
+  EXPECT_NE(measured({first, Side::u1}, {second, Side::u1}).continuity, Continuity::g1);
 }
 
 TEST(Join, WhatIsMadeIsMeasured) {
   Random random(2);
   for (int k = 0; k < 80; ++k) {
-    const Edge a = edges[k % 4], b = edges[(k / 4) % 4];
+    const Side a = edges[k % 4], b = edges[(k / 4) % 4];
     const BezierPatch p = k % 3 == 1 ? random_rational(random, 1 + k % 3, 1 + k % 4, 0.8, 1.2)
                                      : random_polynomial(random, 1 + k % 3, 1 + k % 4);
     const BezierPatch q = k % 5 == 1 ? random_rational(random, 1 + k % 4, 1 + k % 2, 0.8, 1.2)
@@ -186,10 +186,10 @@ TEST(Join, HighestDegreesAndAnyPlaceAndScale) {
           net.push_back(centre + size * (Vec3{i / 15.0, j / 15.0, 0} + 0.02 * uniform_vector(random, -1, 1)));
       const BezierPatch p =
           weighted ? rational(15, 15, net, random_weights(random, 15, 15, 0.9, 1.1)) : polynomial(15, 15, net);
-      const auto made = make_join({p, Edge::v1}, {p, Edge::v1}, 1);
+      const auto made = make_join({p, Side::v1}, {p, Side::v1}, 1);
       ASSERT_TRUE(made.ok()) << made.status().message();
       const JoinTolerances tolerances{.angle = 1e-5, .derivative = 1e-8};
-      const JoinReport report = measured({p, Edge::v1}, {*made, Edge::v1}, tolerances);
+      const JoinReport report = measured({p, Side::v1}, {*made, Side::v1}, tolerances);
       EXPECT_EQ(report.continuity, Continuity::c1) << size << " " << distance << " angle " << report.normal_angle;
       EXPECT_TRUE(report.sharp);
       EXPECT_EQ(report.position_gap, 0);
@@ -199,7 +199,7 @@ TEST(Join, HighestDegreesAndAnyPlaceAndScale) {
 TEST(Join, OneNormalWithoutOneRatioIsG1) {
   // Both in the plane z = 0; the speed across the border grows along it.
   const BezierPatch p = plane(1), q = polynomial(1, 1, {{2, 0, 0}, {2, 1, 0}, {3, 0, 0}, {4, 1.5, 0}});
-  const JoinReport report = measured({p, Edge::u1}, {q, Edge::u0});
+  const JoinReport report = measured({p, Side::u1}, {q, Side::u0});
   EXPECT_EQ(report.continuity, Continuity::g1);
   EXPECT_FALSE(report.ratio.has_value());
   EXPECT_NEAR(report.derivative_gap, std::sqrt(1.25), 2e-3);
@@ -207,15 +207,15 @@ TEST(Join, OneNormalWithoutOneRatioIsG1) {
 
 TEST(Join, GapsWithinToleranceAreClosed) {
   const BezierPatch p = plane(1), q = polynomial(1, 1, {{2, 0, 1e-7}, {2, 1, 1e-7}, {3, 0, 1e-7}, {3, 1, 1e-7}});
-  EXPECT_EQ(measured({p, Edge::u1}, {q, Edge::u0}).continuity, Continuity::none);
-  EXPECT_NEAR(measured({p, Edge::u1}, {q, Edge::u0}).position_gap, 1e-7, 1e-15);
-  EXPECT_EQ(measured({p, Edge::u1}, {q, Edge::u0}, {.position = 1e-6}).continuity, Continuity::c1);
+  EXPECT_EQ(measured({p, Side::u1}, {q, Side::u0}).continuity, Continuity::none);
+  EXPECT_NEAR(measured({p, Side::u1}, {q, Side::u0}).position_gap, 1e-7, 1e-15);
+  EXPECT_EQ(measured({p, Side::u1}, {q, Side::u0}, {.position = 1e-6}).continuity, Continuity::c1);
 }
 
 TEST(Join, MakingKeepsTheRestOfThePatch) {
   Random random(3);
   const BezierPatch p = random_polynomial(random, 3, 2), q = random_polynomial(random, 3, 2);
-  const auto made = make_join({p, Edge::u1}, {q, Edge::u0}, 2);
+  const auto made = make_join({p, Side::u1}, {q, Side::u0}, 2);
   ASSERT_TRUE(made.ok());
   for (int j = 0; j <= 2; ++j) {
     EXPECT_EQ(made->point(0, j), p.point(3, j));
@@ -227,27 +227,27 @@ TEST(Join, MakingKeepsTheRestOfThePatch) {
 
 TEST(Join, RefusesBadInput) {
   const BezierPatch p = plane(1);
-  const auto code = [&](const JoinSide& a, const JoinSide& b, const JoinTolerances& t = {}) {
+  const auto code = [&](const JoinedPatch& a, const JoinedPatch& b, const JoinTolerances& t = {}) {
     return measure_join(a, b, t).status().code();
   };
-  EXPECT_EQ(code({p, static_cast<Edge>(3)}, {p, Edge::u0}), StatusCode::invalid_argument);
-  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0, {1, 1, 0, 1}}), StatusCode::invalid_argument);
-  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0, {0, no_number, 0, 1}}), StatusCode::non_finite);
-  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0}, {.angle = no_number}), StatusCode::invalid_argument);
-  EXPECT_EQ(code({p, Edge::u1}, {p, Edge::u0}, {.position = -1}), StatusCode::invalid_argument);
+  EXPECT_EQ(code({p, static_cast<Side>(4)}, {p, Side::u0}), StatusCode::invalid_argument);
+  EXPECT_EQ(code({p, Side::u1}, {p, Side::u0, {1, 1, 0, 1}}), StatusCode::invalid_argument);
+  EXPECT_EQ(code({p, Side::u1}, {p, Side::u0, {0, no_number, 0, 1}}), StatusCode::non_finite);
+  EXPECT_EQ(code({p, Side::u1}, {p, Side::u0}, {.angle = no_number}), StatusCode::invalid_argument);
+  EXPECT_EQ(code({p, Side::u1}, {p, Side::u0}, {.position = -1}), StatusCode::invalid_argument);
   for (const double k : {0.0, -1.0})
-    EXPECT_EQ(make_join({p, Edge::u1}, {p, Edge::u0}, k).status().code(), StatusCode::invalid_argument);
+    EXPECT_EQ(make_join({p, Side::u1}, {p, Side::u0}, k).status().code(), StatusCode::invalid_argument);
   for (const double k : {no_number, std::numeric_limits<double>::infinity()})
-    EXPECT_EQ(make_join({p, Edge::u1}, {p, Edge::u0}, k).status().code(), StatusCode::non_finite);
+    EXPECT_EQ(make_join({p, Side::u1}, {p, Side::u0}, k).status().code(), StatusCode::non_finite);
   const BezierPatch heavy = rational(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}}, {4, 4, 1, 1});
-  EXPECT_EQ(make_join({heavy, Edge::u1}, {p, Edge::u0}, 1).status().code(), StatusCode::invalid_weight);
-  EXPECT_TRUE(make_join({heavy, Edge::u1}, {p, Edge::u0}, 4).ok());
+  EXPECT_EQ(make_join({heavy, Side::u1}, {p, Side::u0}, 1).status().code(), StatusCode::invalid_weight);
+  EXPECT_TRUE(make_join({heavy, Side::u1}, {p, Side::u0}, 4).ok());
 }
 
 TEST(Join, DegeneratePatchesGiveNumbers) {
   const BezierPatch dot = polynomial(2, 2, std::vector<Vec3>(9)), p = plane(1);
   for (const BezierPatch& q : {dot, p}) {
-    const JoinReport report = measured({dot, Edge::u1}, {q, Edge::u0});
+    const JoinReport report = measured({dot, Side::u1}, {q, Side::u0});
     EXPECT_FALSE(std::isnan(report.normal_angle));
     EXPECT_FALSE(std::isnan(report.position_gap));
     EXPECT_LE(report.continuity, Continuity::c0);

@@ -84,8 +84,8 @@ TEST(QuadricPatches, AWholeSphereClosesAndHasPoles) {
   ASSERT_EQ(grid.count_u(), 4u);
   ASSERT_EQ(grid.count_v(), 2u);
   for (std::size_t a = 0; a < 4; ++a) {
-    EXPECT_TRUE(grid.patch(a, 0).collapsed_edges().has(Edge::v0));
-    EXPECT_TRUE(grid.patch(a, 1).collapsed_edges().has(Edge::v1));
+    EXPECT_TRUE(grid.patch(a, 0).collapsed_sides().has(Side::v0));
+    EXPECT_TRUE(grid.patch(a, 1).collapsed_sides().has(Side::v1));
     EXPECT_EQ(grid.patch(a, 1).point(1, 2), (Vec3{0, 0, 1}));
   }
   for (std::size_t b = 0; b < 2; ++b)
@@ -114,7 +114,7 @@ TEST(QuadricPatches, DegreesAreTheLowestThatDo) {
 
 TEST(QuadricPatches, ConesHaveTheirApex) {
   const PatchGrid grid = grid_of(piece(quadric({.a = 1, .b = 1, .c = -1}), {0, 2 * pi, 0, 3}));
-  for (const BezierPatch& patch : grid.patches()) EXPECT_TRUE(patch.collapsed_edges().has(Edge::v0));
+  for (const BezierPatch& patch : grid.patches()) EXPECT_TRUE(patch.collapsed_sides().has(Side::v0));
 }
 
 TEST(QuadricPatches, LongHyperbolasAreCut) {

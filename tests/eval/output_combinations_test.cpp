@@ -1,7 +1,8 @@
 // Every call that evaluates writes all outputs that it is asked for, whatever the others are, and nothing else: each
 // output alone is compared with the reference, and combinations are compared with the outputs alone, bit by bit.
 //
-// The code that runs depends on outputs, degrees, layouts and stores, so fast paths are tested here without being named.
+// The code that runs depends on outputs, degrees, layouts and stores, so fast paths are tested here without being
+// named.
 
 #include <cmath>
 #include <functional>
@@ -56,7 +57,8 @@ void expect_combinations(const Form<Memory>& form, const OutputBytes& all, std::
   EXPECT_EQ(wrong, 0u) << what << ": so many of " << masks.size() << " combinations";
 }
 
-/// Compares outputs alone, of patches in [0,1]^2, with the reference. `loss`: how much worse than by the Bernstein form.
+/// Compares outputs alone, of patches in [0,1]^2, with the reference. `loss`: how much worse than by the Bernstein
+/// form.
 template <class T>
 void expect_reference(const PatchSet& set, const std::vector<Place>& places, const OutputBytes& all,
                       const std::function<double(const Place&)>& loss, const std::string& what) {
@@ -64,7 +66,7 @@ void expect_reference(const PatchSet& set, const std::vector<Place>& places, con
   for (const Place& at : places) {
     const std::size_t k = record++;
     const BezierPatch patch = set.patch(at.patch);
-    if (patch.collapsed_edges().any()) continue;
+    if (patch.collapsed_sides().any()) continue;
     const RealJet jet = reference_jet(patch, at.u, at.v);
     const RealGeometry g = reference_geometry(jet);
     const RealVec3 origin = sizeof(T) == 4 ? RealVec3{set.origin().x, set.origin().y, set.origin().z} : RealVec3{};

@@ -179,9 +179,9 @@ class Program {
     TessellationOptions options{.tolerance = number()};
     options.relative = data_.ConsumeBool();
     if (data_.ConsumeBool()) options.angle = number();
-    options.weld = number();
-    options.share_vertices = data_.ConsumeBool();
-    options.smallest = data_.ConsumeBool();
+    options.joining.weld = number();
+    options.joining.share_vertices = data_.ConsumeBool();
+    if (data_.ConsumeBool()) options.tolerance.reset(), options.budget = 2000;
     options.fewest = data_.ConsumeBool();
     options.quads = data_.ConsumeBool();
     options.spare = data_.ConsumeBool() ? 0.25 : number();

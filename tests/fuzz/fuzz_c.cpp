@@ -1,6 +1,6 @@
-// libFuzzer: any calls through C, with any numbers, sizes, strides and handles, also released ones, must return in bounded
-// time and memory, with a code and a sentence or with usable results. Only memory is what the call states: no interface of
-// C can check that.
+// libFuzzer: any calls through C, with any numbers, sizes, strides and handles, also released ones, must return in
+// bounded time and memory, with a code and a sentence or with usable results. Only memory is what the call states: no
+// interface of C can check that.
 
 #include <fuzzer/FuzzedDataProvider.h>
 

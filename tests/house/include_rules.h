@@ -15,8 +15,8 @@ struct SourceFile {
   std::string text;
 };
 
-/// The breaches of the rules, a sentence each: "src/io/mesh/ply.cpp:7: <tbb/...> is not for io". `known` holds the paths of
-/// all files, against which "floor/file.h" and "tessera/file.h" are resolved.
+/// The breaches of the rules, a sentence each: "src/io/mesh/ply.cpp:7: <tbb/...> is not for io". `known` holds the
+/// paths of all files, against which "floor/file.h" and "tessera/file.h" are resolved.
 std::vector<std::string> check_includes(const SourceFile& file, const FloorTable& table, const Names& known);
 
 /// Floors that the call tessera_floor(NAME SOURCES ... BELOW ...) in a CMake file states, by floor. They only order the

@@ -20,7 +20,7 @@ LARGER = {  # classes with more: how many, and why
     'ObjFreeformReader': (35, 'a function for each statement of the format'),
     'ExactScene': (33, 'implements the interface of scenes'),
     'Lanes': (29, 'the operations of a vector'),
-    'RayScene::Impl': (28, 'the interface that scenes implement'),
+    'RayScene::Impl': (29, 'the interface that scenes implement'),
     'RibReader': (27, 'a function for each request of the format'),
     'TextCursor': (27, 'a function for each kind of token'),
     'ProvenMesh': (27, 'makes, writes and updates a mesh: to be divided'),

@@ -169,7 +169,7 @@ TEST(Bpt, TheTeapotIsNewells) {
     const BezierPatch& patch = std::get<BezierPatch>(surface.surface);
     EXPECT_EQ(patch.degree_u(), 3);
     EXPECT_EQ(patch.degree_v(), 3);
-    collapsed += patch.collapsed_edges().any();
+    collapsed += patch.collapsed_sides().any();
     box.extend(patch.hull_box());
   }
   EXPECT_EQ(collapsed, 8);  // the knob's four patches and the bottom's four

@@ -14,9 +14,9 @@
 
 namespace tessera::test { namespace {
 
-// Trimmed faces without topology, whose edges CAD curves state to 1e-4: vertices that nearly coincide along an edge must
-// not draw its ends together. Lines that close gaps in loops cross from patch to patch, and loops pass corners of patches
-// within rounding.
+// Trimmed faces without topology, whose edges CAD curves state to 1e-4: vertices that nearly coincide along an edge
+// must not draw its ends together. Lines that close gaps in loops cross from patch to patch, and loops pass corners of
+// patches within rounding.
 TEST(JoinedFaces, OfAWingletLeaveNoOpenEdge) {
   const char* const data = std::getenv("TESSERA_TEST_DATA");
   if (!data) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";

@@ -50,7 +50,7 @@ TEST_P(MeshFiles, EveryBitComesBack) {
 
 TEST_P(MeshFiles, PositionsInDoubleAreWritten) {
   Mesh mesh = random_mesh(50, 80, {true, true, false});
-  for (std::size_t k = 0; k < mesh.positions.size(); ++k) mesh.positions_f64.push_back(1e6 + mesh.positions[k] / 3.0);
+  for (std::size_t k = 0; k < mesh.positions.size(); ++k) mesh.model_positions.push_back(1e6 + mesh.positions[k] / 3.0);
   ASSERT_TRUE(write_mesh(mesh, path()).ok());
   std::ifstream file(path(), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -65,15 +65,15 @@ TEST_P(MeshFiles, PositionsInDoubleAreWritten) {
   } else {
     EXPECT_NE(bytes.find("property double x\nproperty double y\nproperty double z\nproperty float nx\n"), bytes.npos);
     const std::size_t body = bytes.find("end_header\n") + 11, record = 3 * 8 + 5 * 4;
-    found.resize(mesh.positions_f64.size());
+    found.resize(mesh.model_positions.size());
     for (std::size_t k = 0; k < mesh.vertex_count(); ++k)
       std::memcpy(&found[3 * k], bytes.data() + body + k * record, 3 * sizeof(double));
   }
-  EXPECT_EQ(found, mesh.positions_f64);
+  EXPECT_EQ(found, mesh.model_positions);
   EXPECT_EQ(test::value_of(read_mesh(path())).normals, mesh.normals);
-  mesh.positions_f64[7] = std::numeric_limits<double>::infinity();
+  mesh.model_positions[7] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(write_mesh(mesh, path()).code(), StatusCode::non_finite);
-  mesh.positions_f64.pop_back();
+  mesh.model_positions.pop_back();
   EXPECT_EQ(write_mesh(mesh, path()).code(), StatusCode::count_mismatch);
 }
 

@@ -26,7 +26,7 @@ struct Kind {
 Mesh piece_of(std::size_t k, const Kind& kind) {
   Mesh mesh = random_mesh(1000 + 37 * k, 1800 + 11 * k, kind.attributes, {10, 20, 30});
   if (kind.doubles)
-    for (const float x : mesh.positions) mesh.positions_f64.push_back(double(x) + 1e-9);
+    for (const float x : mesh.positions) mesh.model_positions.push_back(double(x) + 1e-9);
   for (std::size_t n = 0; kind.quads && n < 50 + k; ++n) {
     for (std::size_t c = 0; c < 4; ++c) mesh.quads.push_back(static_cast<std::uint32_t>(7 * n + c));
     if (kind.attributes.patches) mesh.quad_patches.push_back(static_cast<std::uint32_t>(n));
@@ -48,7 +48,7 @@ Mesh joined(const std::vector<Mesh>& meshes, std::vector<PiecePlace>& places) {
     const std::size_t vertices = whole.vertex_count(), patches = k * patches_per_piece;
     places.push_back({vertices, whole.triangle_count(), whole.quad_count(), patches});
     add(whole.positions, piece.positions, 0);
-    add(whole.positions_f64, piece.positions_f64, 0);
+    add(whole.model_positions, piece.model_positions, 0);
     add(whole.normals, piece.normals, 0);
     add(whole.parameters, piece.parameters, 0);
     add(whole.indices, piece.indices, vertices);
@@ -290,7 +290,7 @@ TEST(VtpPieces, ArraysAreThoseOfTheMesh) {
       EXPECT_EQ(array_of<float>(text, "TCoords"), mesh.parameters);
     }
     if (kind.doubles) {
-      EXPECT_EQ(array_of<double>(text, "Points"), mesh.positions_f64);
+      EXPECT_EQ(array_of<double>(text, "Points"), mesh.model_positions);
     } else {
       const std::vector<float> points = array_of<float>(text, "Points");
       ASSERT_EQ(points.size(), mesh.positions.size());

@@ -222,7 +222,7 @@ TEST(Models, Section12Joins) {
   const auto report = [](const std::string& name) {
     const Model two = model(name);
     const PatchGrid p = value_of(to_bezier(two.surfaces.at(0))), q = value_of(to_bezier(two.surfaces.at(1)));
-    return value_of(measure_join({p.patch(0, 0), Edge::u1}, {q.patch(0, 0), Edge::u0}));
+    return value_of(measure_join({p.patch(0, 0), Side::u1}, {q.patch(0, 0), Side::u0}));
   };
   EXPECT_EQ(report("join_c1").continuity, Continuity::c1);
   const JoinReport g1 = report("join_g1");

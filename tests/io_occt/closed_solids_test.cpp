@@ -104,7 +104,7 @@ TEST(ClosedSolids, HaveFewMoreTrianglesThanUnconnectedFaces) {
       const TessellationOptions options{.tolerance = 1e-4, .relative = true};
       closed += mesh_of(shape, options).report.triangles;
       TessellationOptions apart = options;
-      apart.close_edges = false;
+      apart.joining.close_edges = false;
       open += mesh_of(shape, apart).report.triangles;
     }
     std::printf("%s: %zu triangles closed, %zu unconnected\n", path.filename().c_str(), closed, open);

@@ -161,7 +161,7 @@ TEST(Model, MapsKeepSharedBordersAndPoles) {
   for (std::size_t a = 1; a < grid.count_u(); ++a)
     for (std::size_t b = 0; b < grid.count_v(); ++b)
       for (int j = 0; j <= 2; ++j) EXPECT_EQ(grid.patch(a - 1, b).point(2, j), grid.patch(a, b).point(0, j));
-  for (std::size_t a = 0; a < grid.count_u(); ++a) EXPECT_TRUE(grid.patch(a, 0).collapsed_edges().has(Edge::v0));
+  for (std::size_t a = 0; a < grid.count_u(); ++a) EXPECT_TRUE(grid.patch(a, 0).collapsed_sides().has(Side::v0));
 }
 
 TEST(Model, ErrorsNameTheSurface) {

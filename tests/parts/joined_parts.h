@@ -34,7 +34,7 @@ inline void append(const Mesh& part, std::uint32_t patches_before, Mesh& mesh) {
   const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
   mesh.origin = part.origin;
   add(part.positions, mesh.positions), add(part.normals, mesh.normals), add(part.parameters, mesh.parameters);
-  add(part.positions_f64, mesh.positions_f64);
+  add(part.model_positions, mesh.model_positions);
   add_raised(part.indices, vertices, mesh.indices), add_raised(part.quads, vertices, mesh.quads);
   add_raised(part.patches, patches_before, mesh.patches),
       add_raised(part.quad_patches, patches_before, mesh.quad_patches);
@@ -72,7 +72,7 @@ inline std::string difference(const Mesh& a, const Mesh& b) {
   if (a.triangle_count() != b.triangle_count()) return count("triangles", a.triangle_count(), b.triangle_count());
   if (differ(a.indices, b.indices)) return "indices";
   if (differ(a.positions, b.positions)) return "positions";
-  if (differ(a.positions_f64, b.positions_f64)) return "positions in double";
+  if (differ(a.model_positions, b.model_positions)) return "positions in double";
   if (differ(a.normals, b.normals)) return "normals";
   if (differ(a.parameters, b.parameters)) return "parameters";
   if (differ(a.patches, b.patches) || differ(a.quad_patches, b.quad_patches)) return "patches";

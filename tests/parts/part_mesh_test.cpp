@@ -82,7 +82,7 @@ TEST(PartMesh, OfPatchesIsTheWholes) {
       expect_same(model, {.tolerance = tolerance / 8, .relative = true}, "a share", random);
       expect_same(model, {.tolerance = tolerance, .angle = 0.2}, "an angle", random);
       expect_same(model, {.pixels = PixelTolerance{200 * tolerance, view}}, "pixels", random);
-      expect_same(model, {.tolerance = tolerance, .weld = 0.2 * tolerance}, "a weld", random);
+      expect_same(model, {.tolerance = tolerance, .joining = {.weld = 0.2 * tolerance}}, "a weld", random);
       expect_same(model, {.tolerance = tolerance, .precision = Precision::double_precision}, "doubles", random);
     }
   }
@@ -104,7 +104,7 @@ TEST(PartMesh, OfTrimmedShapesIsTheWholes) {
   for (const double tolerance : {0.3, 0.05, 1e-3, 1e-4}) {
     expect_same(model, {.tolerance = tolerance}, "instances", random);
     expect_same(model, {.tolerance = tolerance, .angle = 0.3, .quads = true}, "an angle and quads", random);
-    expect_same(model, {.tolerance = tolerance, .close_edges = false}, "open edges", random);
+    expect_same(model, {.tolerance = tolerance, .joining = {.close_edges = false}}, "open edges", random);
   }
 }
 
@@ -172,9 +172,9 @@ TEST(PartMesh, TellsWhatItCannotDo) {
   EXPECT_EQ(part_of(model, extents, 0, 2, std::nan("")).status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(part_of(model, {}, 0, 2, 0).status().code(), StatusCode::count_mismatch);
   const ModelPart part = value_of(part_of(model, extents, 0, 2, 0));
-  for (const TessellationOptions& options : {TessellationOptions{.tolerance = 0.1, .share_vertices = true},
-                                             {.tolerance = 0.1, .crease_angle = 0.1},
-                                             {.max_triangles = 1000, .smallest = true},
+  for (const TessellationOptions& options : {TessellationOptions{.tolerance = 0.1, .joining = {.share_vertices = true}},
+                                             {.tolerance = 0.1, .joining = {.crease_angle = 0.1}},
+                                             {.budget = 1000},
                                              {.tolerance = 0.1, .fewest = true}})
     EXPECT_EQ(tessellate_part(part, options).status().code(), StatusCode::unsupported);
   EXPECT_EQ(tessellate_part(part, {.tolerance = -1}).status().code(), StatusCode::invalid_argument);

@@ -1,6 +1,6 @@
 // Equal roots, among few and among many.
 
-#include "ray/seam/distinct_roots.h"
+#include "ray/border/distinct_roots.h"
 
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ std::vector<BezierPatch> lunes() {
 
 TEST(DistinctRoots, ThePolesOfALuneAreTwo) {
   const PatchSet set = set_of(lunes());
-  const EdgeMask collapsed = SetView(set).collapsed_edges(0);
-  ASSERT_TRUE(collapsed.has(Edge::v0) && collapsed.has(Edge::v1));
+  const SideMask collapsed = SetView(set).collapsed_sides(0);
+  ASSERT_TRUE(collapsed.has(Side::v0) && collapsed.has(Side::v1));
   const RayScene scene = value_of(RayScene::make(set));
   HitLists found;
   ASSERT_TRUE(scene.all(std::vector{ray({0, 0, 3}, {0, 0, -1})}, found).ok());

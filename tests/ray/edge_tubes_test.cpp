@@ -17,9 +17,9 @@ double widest(const RayScene& scene) {
   return gaps.empty() ? 0 : *std::ranges::max_element(gaps);
 }
 
-SolidTally cast(const Shape& shape, std::size_t rays, bool seams = true) {
+SolidTally cast(const Shape& shape, std::size_t rays, bool edges = true) {
   const PatchSet set = value_of(make_patch_set(shape));
-  const RayScene scene = value_of(RayScene::make(set, RaySceneOptions{.seams = seams}));
+  const RayScene scene = value_of(RayScene::make(set, RaySceneOptions{.edges = edges}));
   SolidRays solid(shape, scene, 3);
   EXPECT_GT(solid.inside_count(), 20u);
   solid.cast(rays);
@@ -118,7 +118,7 @@ TEST(EdgeTubes, SharedBordersHaveNone) {
   const RayScene scene = value_of(RayScene::make(set)), without = value_of(RayScene::make(loose));
   EXPECT_EQ(value_of(scene.edge_gaps()), std::vector<double>(12, 0.0));
   EXPECT_TRUE(value_of(without.edge_gaps()).empty());
-  EXPECT_FALSE(scene.closest(ray({0.5, -1, 1}, {0, 1, 0})).flags.seam);
+  EXPECT_FALSE(scene.closest(ray({0.5, -1, 1}, {0, 1, 0})).flags.edge);
 }
 
 /// A frayed cube, with rays at its edges.
@@ -145,7 +145,7 @@ TEST(EdgeTubes, HitsAreTheNearestPointsOfLoops) {
   std::size_t seams = 0;
   for (const Ray& at : cube.at_edges(4000, 1)) {
     const Hit hit = cube.scene.closest(at);
-    if (hit.kind != HitKind::hit || !hit.flags.seam) continue;
+    if (hit.kind != HitKind::hit || !hit.flags.edge) continue;
     ++seams;
     const Vec3 d = normalized(at.direction), from = hit.position - at.origin;
     const double off = length(from - dot(from, d) * d);
@@ -163,7 +163,7 @@ TEST(EdgeTubes, HitsAreTheNearestPointsOfLoops) {
 // through it: 4 of these rays have none.
 TEST(EdgeTubes, RaysAreNotMovedOffTheirHits) {
   const Frayed cube;
-  const RayScene faces = value_of(RayScene::make(cube.set, RaySceneOptions{.seams = false}));
+  const RayScene faces = value_of(RayScene::make(cube.set, RaySceneOptions{.edges = false}));
   const std::vector<Ray> rays = cube.at_edges(4000, 8);
   HitLists moved, unmoved;
   ASSERT_TRUE(cube.scene.all(rays, moved).ok());
@@ -172,7 +172,7 @@ TEST(EdgeTubes, RaysAreNotMovedOffTheirHits) {
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const std::size_t count = moved.first[k + 1] - moved.first[k], expected = unmoved.first[k + 1] - unmoved.first[k];
     lost += count < expected / 2 * 2;
-    crossings += count > 0 && expected > 1 && moved.hits[moved.first[k]].flags.seam;
+    crossings += count > 0 && expected > 1 && moved.hits[moved.first[k]].flags.edge;
   }
   EXPECT_GT(crossings, 500u);
   EXPECT_LE(lost, crossings / 100);
@@ -204,15 +204,15 @@ TEST(EdgeTubes, AllKindsOfCallsAgree) {
     if (alone.kind != HitKind::hit) continue;
     EXPECT_EQ(hits[k].t, alone.t) << k;
     EXPECT_EQ(hits[k].patch, alone.patch) << k;
-    EXPECT_EQ(hits[k].flags.seam, alone.flags.seam) << k;
-    EXPECT_EQ(outputs.flags[k].seam, alone.flags.seam) << k;
-    EXPECT_EQ(there.flags.seam, alone.flags.seam) << k;
+    EXPECT_EQ(hits[k].flags.edge, alone.flags.edge) << k;
+    EXPECT_EQ(outputs.flags[k].edge, alone.flags.edge) << k;
+    EXPECT_EQ(there.flags.edge, alone.flags.edge) << k;
     EXPECT_NEAR(there.t, alone.t, 1e-9) << k;
-    seams += alone.flags.seam;
+    seams += alone.flags.edge;
   }
   EXPECT_GT(seams, 500u);
   for (std::size_t n = 0; n < std::min(own.hits.size(), other.hits.size()); ++n) {
-    EXPECT_EQ(own.hits[n].flags.seam, other.hits[n].flags.seam);
+    EXPECT_EQ(own.hits[n].flags.edge, other.hits[n].flags.edge);
     EXPECT_NEAR(own.hits[n].residual, other.hits[n].residual, 1e-9);
     EXPECT_LE(own.hits[n].residual, 2.5 * widest(cube.scene) + 1e-9);
   }
@@ -233,7 +233,7 @@ TEST(EdgeTubes, FiltersDecideAboutEdgesToo) {
   for (std::size_t k = 0; k < rays.size(); ++k) {
     EXPECT_EQ(outputs.kind[k], hits[k].kind) << k;
     if (hits[k].kind == HitKind::hit) {
-      EXPECT_EQ(outputs.flags[k].seam, hits[k].flags.seam) << k;
+      EXPECT_EQ(outputs.flags[k].edge, hits[k].flags.edge) << k;
     }
   }
 }
@@ -251,7 +251,7 @@ TEST(EdgeTubes, AreInScenesOfUsers) {
     const Hit hit = cube.scene.closest(at);
     ASSERT_EQ(found.hit.geomID != nothing, hit.kind == HitKind::hit);
     if (hit.kind != HitKind::hit) continue;
-    seams += hit.flags.seam;
+    seams += hit.flags.edge;
     EXPECT_NEAR(found.ray.tfar, hit.t, 1e-6);
     differ += found.hit.primID != hit.patch;
   }
@@ -268,17 +268,17 @@ TEST(EdgeTubes, RaysAlongAnEdge) {
   const Hit along = scene.closest(ray({-1, 0, 1}, {1, 0, 0}));
   ASSERT_EQ(along.kind, HitKind::hit);
   // It begins at a corner, where the border of the end's face may be met as near.
-  EXPECT_TRUE(along.flags.seam || along.flags.uncertified) << along.t << ' ' << along.patch;
+  EXPECT_TRUE(along.flags.edge || along.flags.uncertified) << along.t << ' ' << along.patch;
   EXPECT_GE(along.t, 1 - 1e-9);
   EXPECT_LE(along.t, 5 + 1e-9);
   EXPECT_EQ(scene.closest(ray({-1, -1e-9, 1 + 1e-9}, {1, 0, 0})).kind, HitKind::miss);
   const Hit inside = scene.closest(ray({-1, 1e-9, 1 - 1e-9}, {1, 0, 0}));
   ASSERT_EQ(inside.kind, HitKind::hit);
-  EXPECT_FALSE(inside.flags.seam);
+  EXPECT_FALSE(inside.flags.edge);
   EXPECT_NEAR(inside.t, 1, 1e-9);
   // An infinitely thin ray within the gap between a face and the wall of the hole, straight down.
   const Ray slit = ray({1.7 + 0.5995, 1.4, 5}, {0, 0, -1});
-  EXPECT_TRUE(scene.closest(slit).flags.seam);
+  EXPECT_TRUE(scene.closest(slit).flags.edge);
   EXPECT_EQ(scene.occluded(slit), HitKind::hit);
 }
 
@@ -292,7 +292,7 @@ TEST(EdgeTubes, RaysThatStartInATube) {
   EXPECT_EQ(scene.occluded(ray(in_slit, {0.1, 0, 1})), HitKind::miss);
   const Hit across = scene.closest(ray(in_slit + Vec3{0, 0, 2e-4}, {-1, 0, 0}));
   ASSERT_EQ(across.kind, HitKind::hit);
-  EXPECT_TRUE(across.flags.seam);  // the other side of the hole
+  EXPECT_TRUE(across.flags.edge);  // the other side of the hole
   EXPECT_NEAR(across.t, 1.2, 2e-3);
   Ray later = ray(in_slit + Vec3{0, 0, 1}, {0, 0, -1});
   later.tnear = 1;
@@ -316,7 +316,7 @@ TEST(EdgeTubes, GapsWiderThanFaces) {
     const Ray at = ray(eye, uniform_vector(random, 0, 1) - eye);
     EXPECT_EQ(scene.occluded(at), HitKind::hit);
     ASSERT_TRUE(scene.all({&at, 1}, lists).ok());
-    for (const Hit& hit : lists.hits) EXPECT_TRUE(hit.flags.seam);
+    for (const Hit& hit : lists.hits) EXPECT_TRUE(hit.flags.edge);
   }
 }
 
@@ -353,7 +353,7 @@ TEST(EdgeTubes, AppearWhereBordersPart) {
   EXPECT_EQ(std::ranges::count_if(gaps, [](double gap) { return gap > 1e-3; }), 4);
   const Hit hit = scene.closest(ray({0.5, -5e-4, -1}, {0, 0, 1}));
   EXPECT_EQ(hit.kind, HitKind::hit);
-  EXPECT_TRUE(hit.flags.seam);
+  EXPECT_TRUE(hit.flags.edge);
 }
 
 // Patches that move together need none, and nothing is measured where there are no tubes.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "ray_support.h"
+#include "trim/trim_shapes.h"
 
 namespace tessera::test { namespace {
 
@@ -29,6 +30,30 @@ TEST(Lifetime, StaleUntilRefit) {
   EXPECT_EQ(scene.revision(), set.revision());
   EXPECT_NEAR(scene.closest(down).t, 3, 1e-12);
   EXPECT_EQ(scene.occluded(down), HitKind::hit);
+}
+
+TEST(Lifetime, ScenesKeepSetsThatTheyAreGiven) {
+  const auto scene_of_nothing_else = [] {
+    PatchSet set = set_of({polynomial(1, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}})});
+    EXPECT_FALSE(RayScene::make(std::move(set), {.mode = static_cast<RayMode>(9)}).ok());
+    EXPECT_EQ(set.patch_count(), 1u);  // an error leaves the set with its owner
+    return value_of(RayScene::make(std::move(set)));
+  };
+  RayScene scene = scene_of_nothing_else();
+  EXPECT_NEAR(scene.closest(ray({0.3, 0.6, 5}, {0, 0, -1})).t, 5, 1e-12);
+  EXPECT_TRUE(scene.rebuild().ok());
+}
+
+TEST(Lifetime, ModelsBecomeScenesInOneCall) {
+  Model model;
+  for (const BezierPatch& patch : wavy_field(1, 2)) model.surfaces.push_back({{}, patch});
+  const PatchSet set = value_of(make_patch_set(model));
+  const RayScene scene = value_of(RayScene::make(model)), same = value_of(RayScene::make(set));
+  const Ray down = ray({0.5, 1.5, 9}, {0, 0, -1});
+  EXPECT_EQ(scene.closest(down).t, same.closest(down).t);
+  EXPECT_EQ(scene.closest(down).surface, 1u);
+  model.surfaces[1].trims = std::vector{circle({0.5, 0.5}, 1e101, true)};
+  EXPECT_EQ(RayScene::make(model).status().index(), 1);
 }
 
 TEST(Lifetime, EditsThatTearOrWeldBorders) {
@@ -110,8 +135,7 @@ constexpr bool can_make = requires {
   RayScene::make(std::declval<Source>()...);
 };
 
-static_assert(can_make<PatchSet&> && can_make<const PatchSet&> && can_make<PatchSet&, Mesh&>);
-static_assert(!can_make<PatchSet> && !can_make<PatchSet&, Mesh> && !can_make<PatchSet, Mesh&>,
-              "a scene refers to what it is made of");
+static_assert(can_make<PatchSet&> && can_make<const PatchSet&> && can_make<PatchSet> && can_make<PatchSet&, Mesh&>);
+static_assert(!can_make<PatchSet&, Mesh> && !can_make<PatchSet, Mesh&>, "a scene refers to what it is made of");
 
 }}  // namespace tessera::test

@@ -68,7 +68,7 @@ TEST(TrimmedProof, SeesGaps) {
   fitting.gap = fitting.reach = 0;
   EXPECT_GT(tally_of(fitting, 1000, 43).false_hits, 10u);
   RaySceneOptions options;
-  options.seams = false;
+  options.edges = false;
   one.scene = std::make_shared<const RayScene>(value_of(RayScene::make(*one.set, options)));
   EXPECT_GT(tally_of(one, 1000, 43).missed, 10u);
 }

@@ -291,7 +291,8 @@ TrimLoop round_polygon(int corners) {
   return space_polygon(points);
 }
 
-/// Compares closest hits in grid mode with those in exact mode, and occlusion with closest hits. Only silhouettes differ.
+/// Compares closest hits in grid mode with those in exact mode, and occlusion with closest hits. Only silhouettes
+/// differ.
 void expect_grid_as_exact(const Face& face, const std::vector<Ray>& rays) {
   const TrimRegion region = value_of(TrimRegion::make(*face.model.surfaces[0].trims, face.grid));
   const RayScene exact = value_of(RayScene::make(face.set));

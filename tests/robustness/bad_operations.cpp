@@ -22,7 +22,7 @@ void patch_operations(Table& table, const BezierPatch& patch, const BezierPatch&
   table.row("parameter NaN", non_finite, v_line(patch, not_a_number));
   table.row("a split at 1.5", invalid_argument, split_u(patch, 1.5));
   table.row("a split at infinity", non_finite, split_v(patch, infinity));
-  table.row("no edge", invalid_argument, boundary_curve(patch, Edge{3}));
+  table.row("no side", invalid_argument, boundary_curve(patch, Side{4}));
   table.of("sub_patch(patch, rectangle)");
   table.row("a reversed rectangle", invalid_argument, sub_patch(patch, {1, 0, 0, 1}));
   table.row("a rectangle beyond [0,1]", invalid_argument, sub_patch(patch, {0, 1, 0, 1.01}));
@@ -70,9 +70,9 @@ void spline_operations(Table& table) {
 
 void joins(Table& table, const BezierPatch& patch) {
   table.of("measure_join(p, q, tolerances)");
-  const JoinSide side{patch};
-  table.row("no edge", invalid_argument, measure_join({patch, Edge{5}}, side));
-  table.row("an empty domain", invalid_argument, measure_join({patch, Edge::u0, {0, 0, 0, 1}}, side));
+  const JoinedPatch side{patch};
+  table.row("no side", invalid_argument, measure_join({patch, Side{5}}, side));
+  table.row("an empty domain", invalid_argument, measure_join({patch, Side::u0, {0, 0, 0, 1}}, side));
   table.row("a negative tolerance", invalid_argument, measure_join(side, side, {.angle = -1}));
   table.row("a tolerance of NaN", invalid_argument, measure_join(side, side, {.position = not_a_number}));
   table.of("make_join(p, q, k, reversed)");

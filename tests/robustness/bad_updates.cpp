@@ -174,11 +174,11 @@ void mesh_updates(Table& table, const TessellationOptions& options) {
   bad_view(
       "normals", mesh.views(), mesh.vertex_count(), [](auto& views) -> auto& { return views.normal; }, refused);
   PatchSet other = set_of(wavy_field(3, 3));
-  table.row("another number of patches", stale, update(other, mesh.views()).status(), untouched);
+  table.row("a set of more patches", stale, update(other, mesh.views()).status(), untouched);
   (void)value_of(plan.update(edited.set, {edited.patch, edited.points}, mesh.views()));
-  PatchSet earlier = set_of(edited.patches);
+  PatchSet equal = set_of(edited.patches);
   const std::vector<float> moved = mesh.positions;
-  table.row("another set, at an earlier revision", stale, update(earlier, mesh.views()).status(),
+  table.row("another set of the same patches", stale, update(equal, mesh.views()).status(),
             [&] { return mesh.positions == moved; });
   std::vector<Vec3> pole = edited.points;
   for (std::size_t j = 1; j < 4; ++j) pole[j] = pole[0];

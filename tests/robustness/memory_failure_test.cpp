@@ -131,8 +131,8 @@ TEST(MemoryFails, WhereSurfacesAreConverted) {
   const BezierPatch p = random_rational(random, 3, 3), q = random_polynomial(random, 3, 3);
   survives("split_u", [&] { return split_u(p, 0.3); });
   survives("elevate_degree", [&] { return elevate_degree(p, 5, 4); });
-  survives("measure_join", [&] { return measure_join({p, Edge::u1}, {q, Edge::u0}); });
-  survives("make_join", [&] { return make_join({q, Edge::u1}, {q, Edge::u0}); });
+  survives("measure_join", [&] { return measure_join({p, Side::u1}, {q, Side::u0}); });
+  survives("make_join", [&] { return make_join({q, Side::u1}, {q, Side::u0}); });
   const std::vector<double> t = uniform_parameters(40);
   std::vector<float> memory(3 * 1600);
   survives("evaluate(CoonsPatch)", [&] { return evaluate(patch, t, t, View3<float>::interleaved(memory)); });
@@ -199,9 +199,9 @@ TEST(MemoryFails, WhereMeshesAreMade) {
   survives("check(mesh)", [&] { return check(mesh); });
   TessellationOptions options{.tolerance = 0.01};
   survives("Tessellation::make", [&] { return Tessellation::make(set, options); });
-  options.weld = 1e-4;
-  options.crease_angle = 0.1;
-  options.share_vertices = true;
+  options.joining.weld = 1e-4;
+  options.joining.crease_angle = 0.1;
+  options.joining.share_vertices = true;
   options.angle = 0.3;
   options.fewest = true;
   survives("Tessellation::make, welded", [&] { return Tessellation::make(set, options); });

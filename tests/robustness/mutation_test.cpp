@@ -134,15 +134,16 @@ class Case {
     const int rate = m_.integer(2);
     if (rate <= 16) write(set, Tessellation::make(set, {.rates = UniformRates{rate, m_.chance(0.5) ? 1 : rate}}));
     const double size = set.box().diagonal();
-    TessellationOptions how{.tolerance = m_.number(0.05 * size), .weld = m_.number(m_.chance(0.5) ? 0.0 : 1e-6 * size)};
+    TessellationOptions how{.tolerance = m_.number(0.05 * size),
+                            .joining = {.weld = m_.number(m_.chance(0.5) ? 0.0 : 1e-6 * size)}};
     how.max_triangles = 5000;
     if (m_.chance(0.2)) how.angle = m_.number(0.5);
-    if (m_.chance(0.1)) how.smallest = true;
+    if (m_.chance(0.1)) how.tolerance.reset(), how.budget = how.max_triangles;
     how.fewest = m_.chance(0.1);
     if (m_.chance(0.1))
       how.pixels = PixelTolerance{m_.number(2), {.eye = m_.point({3, 4, 5}), .target = m_.point({0, 0, 0})}};
-    how.share_vertices = m_.chance(0.2);
-    if (m_.chance(0.2)) how.crease_angle = m_.number(0.1);
+    how.joining.share_vertices = m_.chance(0.2);
+    if (m_.chance(0.2)) how.joining.crease_angle = m_.number(0.1);
     how.relative = m_.chance(0.1);
     how.quads = m_.chance(0.2);
     write(set, Tessellation::make(set, how));

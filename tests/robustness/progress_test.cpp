@@ -56,7 +56,7 @@ TEST_F(Progress, Meshes) {
   plans("plan by angle", {.angle = 0.3});
   plans("plan by both", {.tolerance = 2e-3, .angle = 0.3});
   plans("fewest", {.tolerance = 2e-3, .fewest = true});
-  plans("finest for a budget", {.max_triangles = 100000, .smallest = true});
+  plans("finest for a budget", {.budget = 100000});
   Tessellation certified = value_of(Tessellation::make(set_, {.tolerance = 2e-3}));
   Mesh fine = value_of(certified.allocate());
   rises_once("mesh", [&](const Execution& execution) { return certified.run(set_, fine.views(), execution); });

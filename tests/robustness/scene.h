@@ -82,7 +82,7 @@ inline void tessellate_into(Bits& bits, const PatchSet& set) {
   Mesh mesh = value_of(uniform.allocate());
   EXPECT_TRUE(uniform.run(set, mesh.views()).ok());
   bits.add(mesh);
-  const auto plan = value_of(Tessellation::make(set, {.tolerance = 2e-3, .angle = 0.3, .weld = 1e-6}));
+  const auto plan = value_of(Tessellation::make(set, {.tolerance = 2e-3, .angle = 0.3, .joining = {.weld = 1e-6}}));
   mesh = value_of(plan.allocate());
   EXPECT_TRUE(plan.run(set, mesh.views()).ok());
   bits.add(mesh);

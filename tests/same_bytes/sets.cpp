@@ -152,7 +152,7 @@ std::uint64_t certified_hash(const tessera::PatchSet& set, double tolerance, Isa
   tessera::TessellationOptions options;
   options.tolerance = tolerance;
   options.angle = 0.3;
-  options.weld = 1e-6;
+  options.joining.weld = 1e-6;
   options.isa = isa;
   const auto plan = value_of(tessera::Tessellation::make(set, options));
   tessera::Mesh out = value_of(plan.allocate());

@@ -55,7 +55,7 @@ std::uint64_t joins(tessera::Isa) {
   Hash hash;
   const auto patches = some_patches();
   for (std::size_t k = 0; k + 1 < patches.size(); ++k) {
-    const tessera::JoinSide p{patches[k], tessera::Edge::u1}, q{patches[k + 1], tessera::Edge::u0};
+    const tessera::JoinedPatch p{patches[k], tessera::Side::u1}, q{patches[k + 1], tessera::Side::u0};
     const tessera::JoinReport report = value_of(tessera::measure_join(p, q));
     for (const double x : {report.position_gap, report.normal_angle, report.derivative_gap}) hash.add(x);
     const auto made = tessera::make_join(p, q);

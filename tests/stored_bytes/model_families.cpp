@@ -31,8 +31,8 @@ tessera::PatchSet set_of(const std::filesystem::path& file) {
   return value_of(tessera::make_patch_set(value_of(tessera::read_model(file))));
 }
 
-/// Models whose results change if sin, cos, exp, atan2, pow or hypot change by a unit in the last place. All quadrics call
-/// such functions too, whether or not their results show it.
+/// Models whose results change if sin, cos, exp, atan2, pow or hypot change by a unit in the last place. All quadrics
+/// call such functions too, whether or not their results show it.
 bool depends_on_libm(const std::string& name) {
   constexpr std::array names{
       "catenoid",           "coons_bilinear_parabolas", "coons_own_blends", "cylinder",   "enneper", "helicoid",

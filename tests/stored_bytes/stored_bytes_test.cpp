@@ -1,5 +1,6 @@
-// Results have the bytes that they had before: hashes.txt stores a hash of each family for AVX2, AVX-512 and NEON, which
-// compute the same, and one for SSE2, which rounds products. A hash says that something changed, not that it was right.
+// Results have the bytes that they had before: hashes.txt stores a hash of each family for AVX2, AVX-512 and NEON,
+// which compute the same, and one for SSE2, which rounds products. A hash says that something changed, not that it was
+// right.
 
 #include <gtest/gtest.h>
 

@@ -163,7 +163,7 @@ inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std
   CrackCount count;
   if (!plan && plan.status().code() == StatusCode::invalid_argument) {
     options.tolerance.reset();
-    options.smallest = true;
+    options.budget = max_triangles;
     if (Result<Tessellation> finest = Tessellation::make(set, options)) {
       count.capped = true;
       plan = std::move(finest);

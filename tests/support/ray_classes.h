@@ -190,7 +190,7 @@ inline std::vector<RayClass> ray_classes() {
   Set shrunk;
   for (const double width : {1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0})
     shrunk.push_back(placed({shrunk_edge(width)}, 1, {0, 0, static_cast<double>(shrunk.size())})[0]);
-  add("collapsed edges, 1e-1 to 0", shrunk, [](const Set& set, Random& random, double) {
+  add("collapsed sides, 1e-1 to 0", shrunk, [](const Set& set, Random& random, double) {
     const SurfaceJet jet = evaluate_jet(any_of(set, random), power(random, 1e-9, 1), uniform(random, 0, 1));
     const Vec3 direction = unit_vector(random);
     return from_to(jet.position - 2.0 * direction, direction);

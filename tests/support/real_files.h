@@ -7,8 +7,8 @@
 
 namespace tessera::test {
 
-/// The files below a folder, sorted. Leaves out the folder cad_corpus, whose files the survey reads, each in a process of
-/// its own because some of them crash OpenCASCADE, and fault_cases, whose files have tests of their own.
+/// The files below a folder, sorted. Leaves out the folder cad_corpus, whose files the survey reads, each in a process
+/// of its own because some of them crash OpenCASCADE, and fault_cases, whose files have tests of their own.
 inline std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (auto entry = std::filesystem::recursive_directory_iterator(folder); entry != end(entry); ++entry) {

@@ -1,5 +1,6 @@
 #pragma once
-// How far a mesh and its patches lie apart, by samples of both. Shares no code with the bounds that plans are made with.
+// How far a mesh and its patches lie apart, by samples of both. Shares no code with the bounds that plans are made
+// with.
 
 #include <algorithm>
 #include <array>
@@ -37,8 +38,8 @@ class SampledMesh {
   const std::vector<Face>& faces(std::size_t patch) const { return faces_[patch]; }
   Vec3 position(std::size_t vertex) const {
     const std::size_t k = 3 * vertex;
-    if (!mesh_.positions_f64.empty())
-      return {mesh_.positions_f64[k], mesh_.positions_f64[k + 1], mesh_.positions_f64[k + 2]};
+    if (!mesh_.model_positions.empty())
+      return {mesh_.model_positions[k], mesh_.model_positions[k + 1], mesh_.model_positions[k + 2]};
     return mesh_.origin + Vec3{mesh_.positions[k], mesh_.positions[k + 1], mesh_.positions[k + 2]};
   }
 

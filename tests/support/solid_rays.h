@@ -134,16 +134,17 @@ class SolidRays {
   }
   static bool is_flagged(const std::vector<Hit>& hits) {
     return std::ranges::any_of(
-        hits, [](const Hit& hit) { return hit.flags.seam || hit.flags.uncertified || hit.flags.incomplete; });
+        hits, [](const Hit& hit) { return hit.flags.edge || hit.flags.uncertified || hit.flags.incomplete; });
   }
   void check(const Ray& ray, bool is_odd, std::size_t) {
     const Hit nearest = scene_.closest(ray);
     if (is_odd && (nearest.kind != HitKind::hit || scene_.occluded(ray) != HitKind::hit)) ++tally_.leaks;
     const std::vector<Hit>& hits = all(ray);
-    const bool is_seam = nearest.flags.seam || std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.seam; });
+    const bool is_on_edge =
+        nearest.flags.edge || std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.edge; });
     const bool is_incomplete = std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.incomplete; });
     const bool is_wrong = (hits.size() % 2 == 1) != is_odd;
-    if (is_seam) {
+    if (is_on_edge) {
       ++tally_.seams;
       tally_.unmoved += is_incomplete;
       tally_.seam_odd += is_wrong && !is_incomplete;

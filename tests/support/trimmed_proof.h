@@ -140,7 +140,7 @@ class TrimmedCheck {
   double slack(const TrimmedRoot& root, const HitFlags& flags) const {
     const double strict = std::max(1e-9, 16 * 0x1p-53 / root.sine) * of_.size / speed_;
     const double loose = 4 * std::sqrt(tolerance_ * of_.size) / speed_;
-    const bool is_aside = flags.seam || (root.is_at_plug && root.kept != Kept::yes);
+    const bool is_aside = flags.edge || (root.is_at_plug && root.kept != Kept::yes);
     return (flags.uncertified ? std::max(strict, loose) : strict) + (is_aside ? edge_slack(root) : 0);
   }
   /// How far a ray may pass an edge that it hits. Even where faces fit, an edge has some breadth.
@@ -166,14 +166,14 @@ class TrimmedCheck {
     const bool is_met = hit.kind == HitKind::hit;
     tally_.contradicted += (of_.scene->occluded(ray_) == HitKind::hit) != is_met;
     tally_.incomplete += hit.flags.incomplete;
-    tally_.edges += is_met && hit.flags.seam;
+    tally_.edges += is_met && hit.flags.edge;
     if (is_met) check_place(hit);
     const TrimmedRoot* first = nullptr;
     for (const TrimmedRoot& root : roots_)
       if (must_be_met(root) && (first == nullptr || root.t.hi < first->t.hi)) first = &root;
     if (first == nullptr) return false;
     if (!is_met || hit.t > first->t.hi + slack(*first, hit.flags)) return true;
-    if (first->kept == Kept::yes && !hit.flags.seam && nearest_root(hit) == first) note_errors(hit, *first);
+    if (first->kept == Kept::yes && !hit.flags.edge && nearest_root(hit) == first) note_errors(hit, *first);
     return false;
   }
   void note_errors(const Hit& hit, const TrimmedRoot& root) {
@@ -186,7 +186,7 @@ class TrimmedCheck {
     HitLists lists;
     if (!of_.scene->all(std::span(&ray_, 1), lists).ok()) std::abort();
     const std::vector<Hit>& hits = lists.hits;
-    const bool has_edge = std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.seam; });
+    const bool has_edge = std::ranges::any_of(hits, [](const Hit& hit) { return hit.flags.edge; });
     if (has_edge || (hits.empty() && any_root([](const TrimmedRoot& root) { return root.is_at_plug; }))) {
       check_moved(hits);
       return false;
@@ -222,12 +222,12 @@ class TrimmedCheck {
     const double reach = std::max({max_abs(p), max_abs(ray_.origin), max_abs(p - ray_.origin)});
     const double rounding = 64 * 0x1p-53 * max_abs(p) + 0x1p-58 * reach, off = distance_from_line(p, ray_);
     const bool is_at_loop = std::abs(of_.faces[hit.surface].depth(hit.u, hit.v)) < 1e-9L;
-    if (hit.t < ray_.tnear || hit.t > ray_.tfar || off > (hit.flags.seam ? edge_reach() : tolerance_ + rounding) ||
-        (hit.flags.seam && !is_at_loop)) {
+    if (hit.t < ray_.tnear || hit.t > ray_.tfar || off > (hit.flags.edge ? edge_reach() : tolerance_ + rounding) ||
+        (hit.flags.edge && !is_at_loop)) {
       ++tally_.false_hits;
       return;
     }
-    if (hit.flags.seam) return;
+    if (hit.flags.edge) return;
     TrimmedRoot* const root = nearest_root(hit);
     if (root != nullptr) root->hits += counts;
     if (root != nullptr && root->kept != Kept::no) return;

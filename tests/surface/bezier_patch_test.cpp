@@ -105,20 +105,20 @@ TEST(BezierPatch, HullBox) {
   EXPECT_EQ(patch.hull_box().upper, (Vec3{2, 5, 4}));
 }
 
-TEST(BezierPatch, CollapsedEdges) {
+TEST(BezierPatch, CollapsedSides) {
   Random random(3);
-  for (int edges = 0; edges < 16; ++edges) {
+  for (int sides = 0; sides < 16; ++sides) {
     std::vector<Vec3> points = random_points(random, 3, 2);
     for (int i = 0; i <= 3; ++i)
       for (int j = 0; j <= 2; ++j) {
         const bool collapsed =
-            ((edges & 1) && i == 0) || ((edges & 2) && i == 3) || ((edges & 4) && j == 0) || ((edges & 8) && j == 2);
+            ((sides & 1) && j == 0) || ((sides & 2) && i == 3) || ((sides & 4) && j == 2) || ((sides & 8) && i == 0);
         if (collapsed) points[static_cast<std::size_t>(3 * i + j)] = {-0.0, 1, 2};
       }
     points[0] = points[0] == Vec3{0, 1, 2} ? Vec3{0, 1, 2} : points[0];  // by ==: 0 and -0 are one
-    const EdgeMask mask = polynomial(3, 2, points).collapsed_edges();
-    EXPECT_EQ(int{mask.bits}, edges);
-    EXPECT_EQ(mask.any(), edges != 0);
+    const SideMask mask = polynomial(3, 2, points).collapsed_sides();
+    EXPECT_EQ(int{mask.bits}, sides);
+    EXPECT_EQ(mask.any(), sides != 0);
   }
 }
 

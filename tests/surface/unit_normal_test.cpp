@@ -39,10 +39,10 @@ TEST(UnitNormal, LimitAtACollapsedEdgeOfAnyOrientation) {
       const BezierPatch upright = random_pole_patch(random, m, n, with_weights);
       for (int way = 0; way < 8; ++way) {
         const BezierPatch patch = reoriented(upright, way);
-        const EdgeMask edges = patch.collapsed_edges();
+        const SideMask edges = patch.collapsed_sides();
         ASSERT_TRUE(edges.any());
-        const bool along_u = edges.has(Edge::u0) || edges.has(Edge::u1);
-        const double end = edges.has(Edge::u1) || edges.has(Edge::v1) ? 1 : 0;
+        const bool along_u = edges.has(Side::u0) || edges.has(Side::u1);
+        const double end = edges.has(Side::u1) || edges.has(Side::v1) ? 1 : 0;
         for (const double across : {0.0, 0.125, 0.3, 0.5, 0.77, 1.0}) {
           const double u = along_u ? end : across, v = along_u ? across : end, step = 1e-7;
           const UnitNormal normal = unit_normal(patch, u, v);

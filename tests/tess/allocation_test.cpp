@@ -47,12 +47,12 @@ TEST(TessellationMemory, PlansTakeLessThanAKilobyteAPatch) {
   Mesh mesh = good(plan(options).allocate());
   EXPECT_LE(bytes_per_patch(edited,
                             [&] {
-                              Tessellation followed = plan(options);
+                              Tessellation followed = good(Tessellation::make(edited, options));
                               (void)good(followed.update(edited, {std::span(&patch, 1), points}, mesh.views()));
                             }),
             1024);
-  options.weld = 1e-4;
-  options.share_vertices = true;
+  options.joining.weld = 1e-4;
+  options.joining.share_vertices = true;
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan(options); }), 1024);
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan({.tolerance = 0.01, .angle = 0.1}); }), 1024);
   EXPECT_LE(bytes_per_patch(set, [&] { (void)plan({.pixels = PixelTolerance{1, view}}); }), 1024);
@@ -92,7 +92,7 @@ TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
 TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {
   const PatchSet set = set_of(wavy_field(60, 50));
   for (const bool share : {false, true}) {
-    const auto plan = good(Tessellation::make(set, {.tolerance = 0.01, .share_vertices = share}));
+    const auto plan = good(Tessellation::make(set, {.tolerance = 0.01, .joining = {.share_vertices = share}}));
     Mesh mesh = good(plan.allocate());
     const MeshViews views = mesh.views();
     EXPECT_LE(bytes_per_patch(set, [&] { ASSERT_TRUE(plan.run(set, views).ok()); }), 10);

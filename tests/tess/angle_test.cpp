@@ -140,8 +140,7 @@ TEST(Angle, CombinesWithADistance) {
   EXPECT_GE(both, std::max(distance, angle));
   EXPECT_LE(both, 2 * std::max(distance, angle));
   EXPECT_NEAR(count({.tolerance = 0.01, .angle = 90 * degree}), distance, 0.1 * distance);
-  const Tessellation budget =
-      good(Tessellation::make(set, {.angle = 10 * degree, .max_triangles = 5000, .smallest = true}));
+  const Tessellation budget = good(Tessellation::make(set, {.angle = 10 * degree, .budget = 5000}));
   EXPECT_LE(budget.angle(), 10 * degree * (1 + 1e-6));
   EXPECT_LE(budget.capacity().triangles, 5000u);
 }

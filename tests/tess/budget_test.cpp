@@ -33,7 +33,7 @@ bool suffice(const PatchSet& set, double tolerance, std::uint64_t budget) {
 
 /// The step k whose tolerance 2^(k/128) is the largest that is no smaller than the plan's bound, and that it takes.
 void expect_no_smaller_tolerance(const PatchSet& set, std::uint64_t budget) {
-  const Tessellation plan = good(Tessellation::make(set, {.max_triangles = budget, .smallest = true}));
+  const Tessellation plan = good(Tessellation::make(set, {.budget = budget}));
   EXPECT_LE(plan.capacity().triangles, budget);
   if (plan.bound() < 1e-6) return;  // flat
   // The plan's bound may lie below its own tolerance, never above it.
@@ -45,7 +45,7 @@ void expect_no_smaller_tolerance(const PatchSet& set, std::uint64_t budget) {
 
 TEST(Budgets, ASmallerToleranceThatTakesFewerTrianglesIsFound) {
   const PatchSet set = set_of({saddle(0, 0, 0, 0.25, 0, 0.75), saddle(1, 0, 0, 0.75, 0.5, 0)});
-  const Tessellation plan = good(Tessellation::make(set, {.max_triangles = 500, .smallest = true}));
+  const Tessellation plan = good(Tessellation::make(set, {.budget = 500}));
   EXPECT_LE(plan.capacity().triangles, 500u);
   EXPECT_LE(plan.bound(), 0.00182 * 1.0055);
   expect_no_smaller_tolerance(set, 500);

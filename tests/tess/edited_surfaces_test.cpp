@@ -74,8 +74,8 @@ struct Followed {
     const PatchSet anew = made();
     for (std::size_t k = 0; k < set.patch_count(); ++k)
       EXPECT_TRUE(std::ranges::equal(set.patch(k).points(), anew.patch(k).points())) << "patch " << k;
-    EXPECT_EQ(mesh.positions, mesh_of(anew, plan).positions);
-    EXPECT_EQ(mesh.normals, mesh_of(anew, plan).normals);
+    EXPECT_EQ(mesh.positions, mesh_of(set, plan).positions);
+    EXPECT_EQ(mesh.normals, mesh_of(set, plan).normals);
   }
 };
 

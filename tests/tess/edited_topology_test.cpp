@@ -26,12 +26,12 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
 TessellationOptions random_options(Random& random, double size) {
   const auto one_of = [&](std::uint64_t count) { return random() % count == 0; };
   TessellationOptions options{.tolerance = size * std::pow(10.0, uniform(random, -2.3, -0.7))};
-  options.share_vertices = one_of(2);
-  if (one_of(3)) options.crease_angle = uniform(random, 0.05, 3);
+  options.joining.share_vertices = one_of(2);
+  if (one_of(3)) options.joining.crease_angle = uniform(random, 0.05, 3);
   if (one_of(4))
-    options.weld = 0;
+    options.joining.weld = 0;
   else if (one_of(3))
-    options.weld = size * std::pow(10.0, uniform(random, -6, -1.35));
+    options.joining.weld = size * std::pow(10.0, uniform(random, -6, -1.35));
   if (one_of(5)) options.angle = uniform(random, 0.5, 1.5);
   options.angle_rate = 6;
   options.quads = one_of(3);
@@ -82,7 +82,7 @@ class EditedTopologyFollowed {
       ++counts_.topologies;
     } else {
       EXPECT_EQ(mesh_.positions, anew.positions);
-      EXPECT_EQ(mesh_.positions_f64, anew.positions_f64);
+      EXPECT_EQ(mesh_.model_positions, anew.model_positions);
       EXPECT_EQ(mesh_.normals, anew.normals);
     }
     mesh_ = anew;
@@ -156,7 +156,7 @@ class EditedTopologyFollowed {
   }
   /// Borders of the same control points have vertices of the same bits.
   void expect_same_borders() {
-    if (options_.share_vertices) return;  // parameters of a shared vertex are those of one patch
+    if (options_.joining.share_vertices) return;  // parameters of a shared vertex are those of one patch
     const SampledMesh sampled(mesh_, set_.patch_count(), false);
     std::map<Side4, std::vector<std::array<double, 3>>> known;
     for (std::size_t k = 0; k < set_.patch_count(); ++k)

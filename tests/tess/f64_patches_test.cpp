@@ -74,7 +74,8 @@ TEST(F64Patches, MeetOthersWithoutACrackAndKeepTheirBounds) {
     for (const bool shares : {false, true})
       for (const bool fewest : {false, true}) {
         const PatchSet set = set_at_zero(strip);
-        const TessellationOptions options{.tolerance = tolerance, .share_vertices = shares, .fewest = fewest};
+        const TessellationOptions options{
+            .tolerance = tolerance, .joining = {.share_vertices = shares}, .fewest = fewest};
         const Tessellation plan = good(Tessellation::make(set, options));
         EXPECT_FALSE(is_f64(plan, 0));
         EXPECT_TRUE(is_f64(plan, strip.size() - 1));
@@ -150,7 +151,7 @@ TEST(F64Patches, FollowUpdates) {
       const std::vector<BezierPatch> strip = half_far_strips()[kind];
       PatchSet set = set_at_zero(strip);
       Tessellation plan =
-          good(Tessellation::make(set, {.tolerance = tolerance, .share_vertices = shares, .spare = 10}));
+          good(Tessellation::make(set, {.tolerance = tolerance, .joining = {.share_vertices = shares}, .spare = 10}));
       Mesh mesh = mesh_of(set, plan);
       const std::size_t before = f64_count(plan);
       // All patches are moved as one; then some are raised between their borders, which stay.

@@ -7,12 +7,12 @@ namespace tessera::test { namespace {
 
 /// The mesh at its positions in double, relative to a triangle's own place.
 void expect_f64_bounds(const PatchSet& set, const Mesh& mesh, std::span<const float> bounds, std::size_t count = 200) {
-  ASSERT_EQ(mesh.positions_f64.size(), mesh.positions.size());
+  ASSERT_EQ(mesh.model_positions.size(), mesh.positions.size());
   for (std::size_t t = 0; t < mesh.triangle_count(); t += 1 + mesh.triangle_count() / count) {
     const std::uint32_t patch = mesh.patches[t];
     MeshTriangle triangle = triangle_of(mesh, t);
     for (std::size_t c = 0; c < 3; ++c) {
-      const double* const p = &mesh.positions_f64[3 * std::size_t{mesh.indices[3 * t + c]}];
+      const double* const p = &mesh.model_positions[3 * std::size_t{mesh.indices[3 * t + c]}];
       triangle.corners[c] = {p[0], p[1], p[2]};
     }
     EXPECT_LE(largest_distance(set.patch(patch), triangle, 0.1, 60).low, bounds[patch]) << t;
@@ -31,7 +31,7 @@ TEST(FarPartsInDouble, KeepATolerance) {
       for (const double apart : {4.0, 1e6, 1e9}) {
         const PatchSet set = set_of(far_apart(body, apart));
         TessellationOptions options = in_double(0.001);
-        options.share_vertices = shares;
+        options.joining.share_vertices = shares;
         const Tessellation plan = good(Tessellation::make(set, options));
         EXPECT_LE(plan.bound(), 0.001 * (1 + 1e-6));
         EXPECT_EQ(plan.welded_borders(), 0u);
@@ -60,7 +60,7 @@ TEST(FarPartsInDouble, PatchesWithinOneFloatMeetAsTheirDoublesDo) {
     for (std::uint64_t seed = 1; seed < 4; ++seed) {
       const PatchSet set = good(PatchSet::make(shaken_bits(patches, seed, 1e-16), {.origin = Vec3{}}));
       TessellationOptions options = in_double(1e-7);
-      options.share_vertices = shares;
+      options.joining.share_vertices = shares;
       const Tessellation plan = good(Tessellation::make(set, options));
       const Mesh mesh = mesh_of(set, plan);
       expect_closed(mesh);
@@ -81,7 +81,7 @@ TEST(FarPartsInDouble, MeetWithoutACrackWhereDoublesDiffer) {
       for (const bool shares : {false, true}) {
         const PatchSet set = set_of(shaken_bits(far_apart(body, 1e6), seed, 1e-16));
         TessellationOptions options = in_double(0.001);
-        options.share_vertices = shares;
+        options.joining.share_vertices = shares;
         const Tessellation plan = good(Tessellation::make(set, options));
         const Mesh mesh = mesh_of(set, plan);
         expect_closed(mesh);
@@ -100,7 +100,7 @@ TEST(FarPartsInDouble, MeetByWeldingWithoutACrack) {
     }
     const PatchSet set = set_of(patches);
     TessellationOptions options = in_double(0.001);
-    options.weld = 6e-5;
+    options.joining.weld = 6e-5;
     const Tessellation plan = good(Tessellation::make(set, options));
     const Mesh mesh = mesh_of(set, plan);
     expect_closed(mesh);
@@ -111,11 +111,11 @@ TEST(FarPartsInDouble, MeetByWeldingWithoutACrack) {
 TEST(FarPartsInDouble, NormalsAndUpdatesFollow) {
   PatchSet set = set_of(far_apart(sphere(), 1e6));
   TessellationOptions options = in_double(0.001);
-  options.crease_angle = 0.01;
+  options.joining.crease_angle = 0.01;
   Tessellation plan = good(Tessellation::make(set, options));
   Mesh mesh = mesh_of(set, plan);
   for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
-    const double* const at = &mesh.positions_f64[3 * k];
+    const double* const at = &mesh.model_positions[3 * k];
     const Vec3 p{at[0], at[1], at[2]}, radius = p - (p.x < 0 ? Vec3{-5e5, 0.3, 0.1} : Vec3{5e5, -0.2, 0.7});
     const Vec3 normal{mesh.normals[3 * k], mesh.normals[3 * k + 1], mesh.normals[3 * k + 2]};
     EXPECT_GE(std::abs(dot(radius, normal)), 1 - 1e-6) << k;
@@ -126,7 +126,7 @@ TEST(FarPartsInDouble, NormalsAndUpdatesFollow) {
   ASSERT_GT(room, 1e-7);
   for (const Vec3& p : set.patch(patch).points()) points.push_back(p + Vec3{0.9 * room, 0, 0});
   EXPECT_FALSE(good(plan.update(set, {std::span(&patch, 1), points}, mesh.views())).topology);
-  EXPECT_EQ(mesh.positions_f64, mesh_of(set, plan).positions_f64);
+  EXPECT_EQ(mesh.model_positions, mesh_of(set, plan).model_positions);
   EXPECT_LE(plan.bound(), 0.001 * (1 + 1e-6));
   expect_closed(mesh);
   expect_f64_bounds(set, mesh, plan.bounds(), 100);
@@ -141,19 +141,19 @@ TEST(FarPartsInDouble, ViewsMustSuitThePlan) {
   MeshViews views = mesh.views();
   views.position = {};
   EXPECT_TRUE(twice.run(set, views).ok());
-  const std::vector<double> alone = mesh.positions_f64;
+  const std::vector<double> alone = mesh.model_positions;
   EXPECT_TRUE(twice.run(set, mesh.views()).ok());
-  EXPECT_EQ(alone, mesh.positions_f64);
+  EXPECT_EQ(alone, mesh.model_positions);
   for (std::size_t k = 0; k < mesh.positions.size(); ++k)
     EXPECT_NEAR(mesh.positions[k] + (k % 3 == 0   ? mesh.origin.x
                                      : k % 3 == 1 ? mesh.origin.y
                                                   : mesh.origin.z),
-                mesh.positions_f64[k], 1e-6);
+                mesh.model_positions[k], 1e-6);
   views = mesh.views();
-  views.position_f64 = {};
+  views.model_position = {};
   EXPECT_EQ(twice.run(set, views).code(), StatusCode::invalid_argument);
   views = mesh.views();
-  views.position_f64.size -= 1;
+  views.model_position.size -= 1;
   EXPECT_EQ(twice.run(set, views).code(), StatusCode::buffer_too_small);
   const Mesh quads = [&] {
     TessellationOptions options = in_double(0.01);
@@ -163,8 +163,8 @@ TEST(FarPartsInDouble, ViewsMustSuitThePlan) {
     EXPECT_TRUE(plan.run(set, made.views()).ok());
     return made;
   }();
-  EXPECT_EQ(quads.positions_f64, mesh.positions_f64);
-  EXPECT_EQ(good(split_quads(quads)).positions_f64, mesh.positions_f64);
+  EXPECT_EQ(quads.model_positions, mesh.model_positions);
+  EXPECT_EQ(good(split_quads(quads)).model_positions, mesh.model_positions);
 }
 
 /// A set of curves alone has an empty mesh, which has no memory to be written to.
@@ -173,7 +173,7 @@ TEST(MeshesWithoutVertices, AreAllocatedWrittenAndFollowed) {
   for (const Precision precision : {Precision::single_precision, Precision::double_precision})
     for (const bool shares : {false, true}) {
       PatchSet set = set_of({line, line});
-      TessellationOptions options{.tolerance = 0.1, .share_vertices = shares};
+      TessellationOptions options{.tolerance = 0.1, .joining = {.share_vertices = shares}};
       options.precision = precision;
       Tessellation plan = good(Tessellation::make(set, options));
       EXPECT_EQ(plan.capacity().vertices, 0u);

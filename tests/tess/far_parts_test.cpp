@@ -16,7 +16,7 @@ TEST(FarParts, AVertexIsWithinItsRounding) {
     const BezierPatch patch =
         k % 2 ? made
               : rational(m, n, {made.points().begin(), made.points().end()}, random_weights(random, m, n, 0.1, 10));
-    const Division division = Division::of(PatchShape::of(patch, EdgeMask{}), Rates{7, 12}, {Segments(7), 13, 9, 12});
+    const Division division = Division::of(PatchShape::of(patch, SideMask{}), Rates{7, 12}, {Segments(7), 13, 9, 12});
     const double most = f64_vertex_rounding(patch, origin);
     EXPECT_LE(most, 0x1p-23 * 310);
     std::vector<Vec3> found;
@@ -74,7 +74,7 @@ TEST(FarParts, MeetWithoutACrackWhereDoublesDiffer) {
       for (const bool shares : {false, true})
         for (const bool fewest : {false, true}) {
           const PatchSet set = set_of(shaken_bits(far_apart(body, 1000), seed));
-          TessellationOptions options{.tolerance = 0.004, .share_vertices = shares};
+          TessellationOptions options{.tolerance = 0.004, .joining = {.share_vertices = shares}};
           options.fewest = fewest;
           const Tessellation plan = good(Tessellation::make(set, options));
           ASSERT_TRUE(is_f64(plan) || !body[0].is_rational());
@@ -93,7 +93,8 @@ TEST(FarParts, MeetWithoutACrackWhereFloatsAreTheSame) {
     for (const bool shares : {false, true}) {
       const PatchSet set =
           good(PatchSet::make(shaken_within_floats(far_apart(closed_body(), 1000), seed), {.origin = Vec3{}}));
-      const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.001, .share_vertices = shares}));
+      const Tessellation plan =
+          good(Tessellation::make(set, {.tolerance = 0.001, .joining = {.share_vertices = shares}}));
       ASSERT_TRUE(is_f64(plan));
       EXPECT_EQ(plan.welded_borders(), 0u);
       EXPECT_EQ(edges_of_set(set).count(), 24u);
@@ -113,7 +114,7 @@ TEST(FarParts, MeetByWeldingWithoutACrack) {
       patch = good(patch.with_points(points));
     }
     const PatchSet set = set_of(patches);
-    const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.002, .weld = 6e-4}));
+    const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.002, .joining = {.weld = 6e-4}}));
     EXPECT_TRUE(is_f64(plan));
     EXPECT_GT(plan.welded_borders(), 0u);
     const Mesh mesh = mesh_of(set, plan);
@@ -126,7 +127,7 @@ TEST(FarParts, SharedNormalsAndVertices) {
   const PatchSet set = set_of(shaken_bits(far_apart(sphere(), 1000), 4));
   for (const bool shares : {false, true}) {
     const Tessellation plan =
-        good(Tessellation::make(set, {.tolerance = 0.001, .crease_angle = 0.1, .share_vertices = shares}));
+        good(Tessellation::make(set, {.tolerance = 0.001, .joining = {.crease_angle = 0.1, .share_vertices = shares}}));
     const Mesh mesh = mesh_of(set, plan);
     expect_closed(mesh);
     for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
@@ -170,9 +171,7 @@ TEST(FarParts, TheSameBytesForAllThreadsAndInstructions) {
 /// The smallest tolerance of a budget, and pixels, that float sums would not keep.
 TEST(FarParts, BudgetsAndPixels) {
   const PatchSet set = set_of(far_apart(sphere(), 1000));
-  TessellationOptions budget{.max_triangles = 200000};
-  budget.smallest = true;
-  const Tessellation plan = good(Tessellation::make(set, budget));
+  const Tessellation plan = good(Tessellation::make(set, {.budget = 200000}));
   EXPECT_TRUE(is_f64(plan));
   EXPECT_LE(plan.bound(), 0.0005);
   expect_closed(mesh_of(set, plan));
@@ -236,7 +235,8 @@ TEST(FarParts, ARefusalNamesATolerance) {
 TEST(FarParts, UpdatesFollow) {
   for (const bool shares : {false, true}) {
     PatchSet set = set_of(shaken_bits(far_apart(sphere(), 1000), 6));
-    Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.001, .share_vertices = shares, .spare = 10}));
+    Tessellation plan =
+        good(Tessellation::make(set, {.tolerance = 0.001, .joining = {.share_vertices = shares}, .spare = 10}));
     Mesh mesh = mesh_of(set, plan);
     // Every patch gets bits of its own at its borders; then one moves as a whole, and its neighbours' borders with it.
     for (const double by : {1e-13, 1e-4}) {

@@ -190,7 +190,7 @@ TEST(Fewest, RatesGoNoFurtherThanTheirRange) {
   const PatchSet set = set_of({polynomial(2, 15, points)});
   for (const bool share : {false, true}) {
     const Tessellation plan =
-        good(Tessellation::make(set, {.tolerance = 1.478e-5, .share_vertices = share, .fewest = true}));
+        good(Tessellation::make(set, {.tolerance = 1.478e-5, .joining = {.share_vertices = share}, .fewest = true}));
     const PatchSegments segments = proven_mesh_of(plan).plan().patches().segments[0];
     EXPECT_GT(segments.v.rate(), 2000);
     EXPECT_LE(segments.v.rate(), max_rate);
@@ -220,7 +220,8 @@ TEST(Fewest, CurvesBesideWeldedBordersOpenNoCrack) {
                       return border(3 - j, 0) - Vec3{i / 2.0, 0, 0.03 * i * i};
                     });
   const PatchSet set = set_of({curve, below, right, left});
-  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 1e-3, .weld = 1e-4, .fewest = true}));
+  const Tessellation plan =
+      good(Tessellation::make(set, {.tolerance = 1e-3, .joining = {.weld = 1e-4}, .fewest = true}));
   EXPECT_GT(plan.welded_borders(), 0u);
   EXPECT_FALSE(proven_mesh_of(plan).plan().division(2).border[3].is_uniform());
   CrackCount cracks;

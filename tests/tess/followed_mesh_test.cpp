@@ -39,8 +39,8 @@ std::vector<TessellationOptions> kinds_of_plans(double tolerance) {
   std::vector<TessellationOptions> all;
   for (const bool vertices : {false, true})
     for (const bool normals : {false, true}) {
-      TessellationOptions options{.tolerance = tolerance, .weld = 1e-4, .share_vertices = vertices};
-      if (normals) options.crease_angle = 0.2;
+      TessellationOptions options{.tolerance = tolerance, .joining = {.weld = 1e-4, .share_vertices = vertices}};
+      if (normals) options.joining.crease_angle = 0.2;
       all.push_back(options);
     }
   all.push_back({.rates = UniformRates{5, 4}});
@@ -110,7 +110,7 @@ TEST(FollowedMesh, OtherRecordsAreNotTouched) {
 }
 
 TEST(FollowedMesh, WeldedNeighboursFollow) {
-  Animated body(torn_field(4, 4), {.tolerance = 0.01, .weld = 1e-4});
+  Animated body(torn_field(4, 4), {.tolerance = 0.01, .joining = {.weld = 1e-4}});
   ASSERT_GT(body.plan.welded_borders(), 0u);
   body.run(moved(body.set, 3, [](const Vec3& p) { return p + Vec3{0, 0, 2e-5}; }));
   body.expect_as_anew();
@@ -140,7 +140,7 @@ double followed_over_bound(const Animated& body, const Mesh& apart) {
 TEST(FollowedMesh, NewBoundsHold) {
   std::size_t changed = 0;
   for (const auto& patches : {wavy_field(5, 4), sphere(), torn_field(3, 3)}) {
-    Animated body(patches, {.tolerance = 0.02, .weld = 1e-4});
+    Animated body(patches, {.tolerance = 0.02, .joining = {.weld = 1e-4}});
     for (const double by : {0.001, -0.5, 0.3, 3.0}) {
       changed += body.run(moved(body.set, 2, [by](const Vec3& p) { return Vec3{p.x, p.y, p.z * (1 + by)}; })).topology;
       EXPECT_LE(followed_over_bound(body, body.mesh), 1);
@@ -153,7 +153,7 @@ TEST(FollowedMesh, NewBoundsHold) {
 
 TEST(FollowedMesh, SharedVerticesPartWithTheirBorders) {
   // One patch leaves its neighbours; vertices that it shares remain with them as long as the tolerance allows it.
-  Animated body(wavy_field(3, 3), {.tolerance = 0.02, .share_vertices = true});
+  Animated body(wavy_field(3, 3), {.tolerance = 0.02, .joining = {.share_vertices = true}});
   const Mesh apart = mesh_of(body.set, good(Tessellation::make(body.set, {.tolerance = 0.02})));
   const auto lifted = [&](double by) {
     Edits edits;
@@ -185,7 +185,7 @@ TEST(FollowedMesh, AnglesAndPixelsAreProvenAgain) {
   const View view{.eye = {8, -12, 8}, .target = {3, 3, 0}};
   for (const TessellationOptions& options :
        {TessellationOptions{.tolerance = 0.05, .angle = 0.2}, TessellationOptions{.pixels = PixelTolerance{1, view}},
-        TessellationOptions{.angle = 0.3, .pixels = PixelTolerance{2, view}, .weld = 1e-6}}) {
+        TessellationOptions{.angle = 0.3, .pixels = PixelTolerance{2, view}, .joining = {.weld = 1e-6}}}) {
     Animated body(wavy_field(6, 6), options);
     for (const double by : {1.0, 1.001, 0.5, 4.0}) {
       const MeshChange change = body.run(moved(body.set, 4, [by](const Vec3& p) { return Vec3{p.x, p.y, p.z * by}; }));
@@ -265,7 +265,8 @@ TEST(FollowedMesh, CollapsedBordersAreAnotherTopology) {
 
 TEST(FollowedMesh, EditsByOtherMeansAreFollowed) {
   for (const TessellationOptions& options :
-       {TessellationOptions{.tolerance = 0.01}, TessellationOptions{.tolerance = 0.01, .share_vertices = true},
+       {TessellationOptions{.tolerance = 0.01},
+        TessellationOptions{.tolerance = 0.01, .joining = {.share_vertices = true}},
         TessellationOptions{.rates = UniformRates{4, 4}}})
     for (const bool first : {true, false}) {
       Animated body(wavy_field(4, 4), options);
@@ -284,8 +285,9 @@ TEST(FollowedMesh, EditsByOtherMeansAreFollowed) {
 }
 
 TEST(FollowedMesh, NothingIsAllocatedAfterTheFirst) {
-  for (const TessellationOptions& options : {TessellationOptions{.tolerance = 0.02, .weld = 1e-4, .spare = 10},
-                                             TessellationOptions{.rates = UniformRates{}}})
+  for (const TessellationOptions& options :
+       {TessellationOptions{.tolerance = 0.02, .joining = {.weld = 1e-4}, .spare = 10},
+        TessellationOptions{.rates = UniformRates{}}})
     for (const auto& patches : {mixed_patches(2, 300), wavy_field(20, 20), torn_field(8, 8)}) {
       Animated body(patches, options);
       const Edits all = moved(body.set, 1, [](const Vec3&p) { return 0.995 * p; }),

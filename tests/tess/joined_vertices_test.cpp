@@ -104,9 +104,9 @@ TEST(SharedVertices, TheSameTrianglesWithEachPlaceOnce) {
   for (const Case& c : cases())
     for (const double relative : {0.3, 0.03, 0.003, 3e-4}) {
       const PatchSet set = set_of(c.patches);
-      TessellationOptions options{.tolerance = relative, .relative = true, .weld = c.weld};
+      TessellationOptions options{.tolerance = relative, .relative = true, .joining = {.weld = c.weld}};
       const Mesh apart = mesh_of(set, plan_of(set, options));
-      options.share_vertices = true;
+      options.joining.share_vertices = true;
       const Tessellation plan = plan_of(set, options);
       const Mesh mesh = mesh_of(set, plan);
       EXPECT_TRUE(mesh.normals.empty());
@@ -135,14 +135,14 @@ TEST(SharedVertices, TheSameTrianglesWithEachPlaceOnce) {
 
 TEST(SharedVertices, NormalsNeedACreaseAngle) {
   const PatchSet set = set_of(closed_body());
-  const Tessellation plan = plan_of(set, {.tolerance = 0.01, .share_vertices = true});
+  const Tessellation plan = plan_of(set, {.tolerance = 0.01, .joining = {.share_vertices = true}});
   Mesh mesh = good(plan.allocate());
   mesh.normals.resize(mesh.positions.size());
   const Status status = plan.run(set, mesh.views());
   EXPECT_EQ(status.code(), StatusCode::invalid_argument);
   EXPECT_NE(status.message().find("need a crease angle"), std::string::npos);
   for (const double angle : {-0.1, 4.0, std::nan("")})
-    EXPECT_EQ(Tessellation::make(set, {.tolerance = 0.01, .crease_angle = angle}).status().code(),
+    EXPECT_EQ(Tessellation::make(set, {.tolerance = 0.01, .joining = {.crease_angle = angle}}).status().code(),
               StatusCode::invalid_argument);
 }
 
@@ -161,10 +161,10 @@ std::size_t creased_places(const Mesh& mesh) {
 TEST(JoinedNormals, OneNormalAcrossSmoothJoinsAndAllAroundPoles) {
   for (const auto& patches : {smooth_field(), round_sphere(), torn(round_sphere(), 1e-7)}) {
     const PatchSet set = set_of(patches);
-    TessellationOptions options{.tolerance = 0.003, .weld = 1e-5};
+    TessellationOptions options{.tolerance = 0.003, .joining = {.weld = 1e-5}};
     const Mesh plain = mesh_of(set, plan_of(set, options));
     EXPECT_GT(creased_places(plain), 0u);
-    options.crease_angle = 0.01;
+    options.joining.crease_angle = 0.01;
     const Mesh joined = mesh_of(set, plan_of(set, options));
     EXPECT_EQ(creased_places(joined), 0u);
     EXPECT_EQ(joined.positions, plain.positions);
@@ -173,7 +173,7 @@ TEST(JoinedNormals, OneNormalAcrossSmoothJoinsAndAllAroundPoles) {
     for (std::size_t k = 0; k < plain.normals.size(); ++k)
       most = std::max(most, std::abs(double(plain.normals[k]) - double(joined.normals[k])));
     EXPECT_LE(most, 1e-4);
-    options.share_vertices = true;
+    options.joining.share_vertices = true;
     const Mesh shared = mesh_of(set, plan_of(set, options));
     const MeshReport report = good(check(shared));
     EXPECT_EQ(report.vertices, report.distinct_positions);
@@ -190,17 +190,17 @@ TEST(JoinedNormals, CreasesStay) {
   EXPECT_GT(border, 2u);
   for (const bool share : {false, true})
     for (const double angle : {0.0, 0.5, 1.5}) {
-      options.share_vertices = share;
-      options.crease_angle = angle;
+      options.joining.share_vertices = share;
+      options.joining.crease_angle = angle;
       const Mesh creased = mesh_of(set, plan_of(set, options));
       EXPECT_EQ(creased.positions, plain.positions);
       EXPECT_EQ(creased.normals, plain.normals);
       EXPECT_EQ(creased.indices, plain.indices);
     }
-  options.crease_angle = 1.6;
-  options.share_vertices = false;
+  options.joining.crease_angle = 1.6;
+  options.joining.share_vertices = false;
   EXPECT_EQ(creased_places(mesh_of(set, plan_of(set, options))), 0u);
-  options.share_vertices = true;
+  options.joining.share_vertices = true;
   EXPECT_EQ(mesh_of(set, plan_of(set, options)).vertex_count(), plain.vertex_count() - border);
 }
 
@@ -208,7 +208,7 @@ TEST(JoinedNormals, ThoseOfPatchesTurnedAgainstEachOtherStay) {
   std::vector<BezierPatch> patches = smooth_field();
   patches[7] = reoriented(patches[7], 1);  // one parameter runs the other way
   const PatchSet set = set_of(patches);
-  const Mesh mesh = mesh_of(set, plan_of(set, {.tolerance = 0.003, .crease_angle = 0.01}));
+  const Mesh mesh = mesh_of(set, plan_of(set, {.tolerance = 0.003, .joining = {.crease_angle = 0.01}}));
   const MeshReport report = good(check(mesh));
   EXPECT_EQ(report.flipped_triangles, 0u);
   EXPECT_GT(creased_places(mesh), 0u);
@@ -220,7 +220,7 @@ TEST(JoinedNormals, ThePointOfAConeKeepsItsNormals) {
   for (const double x : {1.0, 0.0, -1.0}) points.push_back({x, 1 - 0.5 * x * x, 0});
   const PatchSet set = set_of({polynomial(1, 2, points)});
   const Mesh plain = mesh_of(set, plan_of(set, {.tolerance = 1e-3}));
-  EXPECT_EQ(mesh_of(set, plan_of(set, {.tolerance = 1e-3, .crease_angle = 0.1})).normals, plain.normals);
+  EXPECT_EQ(mesh_of(set, plan_of(set, {.tolerance = 1e-3, .joining = {.crease_angle = 0.1}})).normals, plain.normals);
 }
 
 TEST(SharedVertices, TheSameBytesForAnyNumberOfThreads) {
@@ -228,7 +228,8 @@ TEST(SharedVertices, TheSameBytesForAnyNumberOfThreads) {
   Mesh first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-    const Mesh mesh = mesh_of(set, plan_of(set, {.tolerance = 0.01, .crease_angle = 0.1, .share_vertices = true}));
+    const Mesh mesh =
+        mesh_of(set, plan_of(set, {.tolerance = 0.01, .joining = {.crease_angle = 0.1, .share_vertices = true}}));
     if (threads == 1) first = mesh;
     EXPECT_EQ(mesh.positions, first.positions);
     EXPECT_EQ(mesh.normals, first.normals);
@@ -244,8 +245,8 @@ TEST(SharedVertices, LongRings) {
   TessellationOptions options{.tolerance = 5e-6};
   const Mesh plain = mesh_of(set, plan_of(set, options));
   ASSERT_GT(plain.vertex_count(), 6200u);  // two thirds in the ring: more than 4096
-  options.crease_angle = 0.1;
-  options.share_vertices = true;
+  options.joining.crease_angle = 0.1;
+  options.joining.share_vertices = true;
   const Mesh shared = mesh_of(set, plan_of(set, options));
   EXPECT_EQ(shared.positions, plain.positions);
   EXPECT_EQ(shared.normals, plain.normals);
@@ -257,7 +258,8 @@ TEST(Quads, CellsAreQuadsAndTheRestIsStrips) {
   for (const Case& c : cases())
     for (const bool share : {false, true}) {
       const PatchSet set = set_of(c.patches);
-      TessellationOptions options{.tolerance = 0.003, .relative = true, .weld = c.weld, .share_vertices = share};
+      TessellationOptions options{
+          .tolerance = 0.003, .relative = true, .joining = {.weld = c.weld, .share_vertices = share}};
       const Tessellation plain = plan_of(set, options);
       const Mesh mesh = mesh_of(set, plain);
       options.quads = true;

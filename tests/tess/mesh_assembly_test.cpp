@@ -107,15 +107,15 @@ TEST(MeshAssemblies, PositionsInDoubleAreThoseOfThePlacement) {
   const Affine far = Affine::translated({1e9, 0, 0}) * Affine::rotated({0, 0, 1}, 1);
   MeshAssembly assembly = one(mesh, far);
   const Mesh flat = value_of(flatten(assembly));
-  ASSERT_EQ(flat.positions_f64.size(), mesh.positions_f64.size());
+  ASSERT_EQ(flat.model_positions.size(), mesh.model_positions.size());
   for (std::size_t k = 0; k < flat.vertex_count(); ++k) {
-    const Vec3 p{mesh.positions_f64[3 * k], mesh.positions_f64[3 * k + 1], mesh.positions_f64[3 * k + 2]};
-    EXPECT_EQ((Vec3{flat.positions_f64[3 * k], flat.positions_f64[3 * k + 1], flat.positions_f64[3 * k + 2]}),
+    const Vec3 p{mesh.model_positions[3 * k], mesh.model_positions[3 * k + 1], mesh.model_positions[3 * k + 2]};
+    EXPECT_EQ((Vec3{flat.model_positions[3 * k], flat.model_positions[3 * k + 1], flat.model_positions[3 * k + 2]}),
               far.point(p));
   }
   assembly.shapes.push_back({.mesh = ball()});
   assembly.instances.push_back({.shape = 1});
-  EXPECT_TRUE(value_of(flatten(assembly)).positions_f64.empty());
+  EXPECT_TRUE(value_of(flatten(assembly)).model_positions.empty());
 }
 
 TEST(MeshAssemblies, PartsHaveTheNamesAndColoursOfTheirInstances) {

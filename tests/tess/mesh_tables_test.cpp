@@ -26,12 +26,13 @@ TEST(MeshTables, PlansThatNeedTheSameShareThem) {
 }
 
 TEST(MeshTables, PlansOutliveTheSet) {
-  const PatchSet body = set_of(closed_body());
-  const Mesh wanted = mesh_of(body, mesh_tables_plan_of(body, 0.01));
   auto first = std::make_unique<PatchSet>(set_of(closed_body()));
   const Tessellation plan = mesh_tables_plan_of(*first, 0.01);
+  const std::size_t bytes = tables_of(plan).bytes();
   first.reset();
-  EXPECT_EQ(mesh_of(body, plan).positions, wanted.positions);
+  EXPECT_EQ(tables_of(plan).bytes(), bytes);
+  Mesh mesh = good(plan.allocate());
+  EXPECT_EQ(plan.run(set_of(closed_body()), mesh.views()).code(), StatusCode::stale);
 }
 
 TEST(MeshTables, LargeOnesAreOfTheirPlanAlone) {

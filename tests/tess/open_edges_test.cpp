@@ -30,10 +30,11 @@ TEST(OpenEdges, AreThoseOfTheMesh) {
     EXPECT_EQ(open_edges_report_of(set_of(closed_body()), {.tolerance = tolerance}).open_edges, 0u);
     open_edges_report_of(set_of(mixed_patches(9, 40)), {.tolerance = tolerance});
     open_edges_report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance, .fewest = true});
-    open_edges_report_of(set_of(wavy_field(3, 5)), {.tolerance = tolerance, .angle = 0.2, .share_vertices = true});
+    open_edges_report_of(set_of(wavy_field(3, 5)),
+                         {.tolerance = tolerance, .angle = 0.2, .joining = {.share_vertices = true}});
     const PatchSet torn = set_of(shaken(wavy_field(4, 4), 1e-3, 3));
-    EXPECT_GT(open_edges_report_of(torn, {.tolerance = tolerance, .weld = 0}).open_edges,
-              open_edges_report_of(torn, {.tolerance = tolerance, .weld = 0.01}).open_edges);
+    EXPECT_GT(open_edges_report_of(torn, {.tolerance = tolerance, .joining = {.weld = 0}}).open_edges,
+              open_edges_report_of(torn, {.tolerance = tolerance, .joining = {.weld = 0.01}}).open_edges);
   }
 }
 
@@ -55,7 +56,7 @@ TEST(OpenEdges, AreClosedByDefaultWhereBordersLieNearerThanAnEighthOfTheToleranc
   };
   EXPECT_EQ(open_edges_report_of(gap(0.0124), {.tolerance = 0.1}).open_edges, 6u);
   EXPECT_EQ(open_edges_report_of(gap(0.0126), {.tolerance = 0.1}).open_edges, 8u);
-  EXPECT_EQ(open_edges_report_of(gap(1e-7), {.tolerance = 0.1, .weld = 0}).open_edges, 8u);
+  EXPECT_EQ(open_edges_report_of(gap(1e-7), {.tolerance = 0.1, .joining = {.weld = 0}}).open_edges, 8u);
   EXPECT_EQ(open_edges_report_of(gap(1e-7), {.angle = 0.1}).open_edges, 6u);
 }
 
@@ -94,7 +95,7 @@ TEST(OpenEdges, OfAStripThinnerThanTheWeldStayItsOwn) {
   // At the rim of a larger patch.
   const PatchSet rim = set_of({rectangle({0, 0, 0}, {1, 0, 0}, {0, -1, 0}), strip});
   EXPECT_EQ(open_edges_report_of(rim, {.tolerance = 0.1}).open_edges, 6u);
-  EXPECT_EQ(open_edges_report_of(rim, {.tolerance = 0.1, .weld = 2 * width}).degenerate_triangles, 0u);
+  EXPECT_EQ(open_edges_report_of(rim, {.tolerance = 0.1, .joining = {.weld = 2 * width}}).degenerate_triangles, 0u);
 }
 
 /// The vertices of each patch are the same bytes whatever the order of the patches and whatever else the set has.

@@ -235,8 +235,8 @@ TEST(Pixels, AFloorBelowTheEye) {
 TEST(Pixels, CombineWithTheOthers) {
   const PatchSet set = set_of(closed_body());
   const View view = views_of(set)[0];
-  const Tessellation plan =
-      good(Tessellation::make(set, {.tolerance = 0.01, .angle = 0.2, .pixels = PixelTolerance{1, view}, .weld = 1e-6}));
+  const Tessellation plan = good(Tessellation::make(
+      set, {.tolerance = 0.01, .angle = 0.2, .pixels = PixelTolerance{1, view}, .joining = {.weld = 1e-6}}));
   EXPECT_LE(plan.bound(), 0.01 * (1 + 1e-6));
   EXPECT_LE(plan.angle(), 0.2 * (1 + 1e-6));
   EXPECT_LE(plan.pixels(), 1 + 1e-6);

@@ -129,12 +129,12 @@ TEST(ProvenMesh, TheSameBytesForAnyNumberOfThreads) {
 TEST(ProvenMesh, ABudgetGivesTheSmallestTolerance) {
   const PatchSet set = set_of(wavy_field(6, 6));
   for (const std::uint64_t budget : {72u, 100u, 1000u, 50000u}) {
-    const Tessellation plan = good(Tessellation::make(set, {.max_triangles = budget, .smallest = true}));
+    const Tessellation plan = good(Tessellation::make(set, {.budget = budget}));
     EXPECT_LE(plan.capacity().triangles, budget);
     const auto finer = Tessellation::make(set, {.tolerance = plan.bound() / 1.05, .max_triangles = budget});
     EXPECT_TRUE(budget <= 100 || !finer.ok()) << budget;
   }
-  const auto few = Tessellation::make(set, {.max_triangles = 71, .smallest = true});
+  const auto few = Tessellation::make(set, {.budget = 71});
   ASSERT_FALSE(few.ok());
   EXPECT_NE(few.status().message().find("takes 72 triangles"), std::string::npos) << few.status().message();
 }

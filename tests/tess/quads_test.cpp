@@ -60,7 +60,8 @@ TEST(Quads, OfCertifiedMeshesAreTheirInnerCells) {
   for (const auto& patches : {closed_body(), sphere(), wavy_field(3, 4), mixed_patches(2, 40)})
     for (const bool share : {false, true}) {
       const PatchSet set = set_of(patches);
-      const TessellationOptions options{.tolerance = 0.003, .relative = true, .share_vertices = share, .quads = true};
+      const TessellationOptions options{
+          .tolerance = 0.003, .relative = true, .joining = {.share_vertices = share}, .quads = true};
       EXPECT_GT(good(Tessellation::make(set, options)).capacity().quads, 0u);
       expect_the_same(set, options);
     }

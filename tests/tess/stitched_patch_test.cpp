@@ -186,7 +186,7 @@ TEST(StitchedPatch, NoTriangleStandsOnACollapsedBorder) {
   for (const Side side : all_sides)
     for (const Rates asked : {Rates{1, 1}, Rates{1, 6}, Rates{5, 1}, Rates{4, 6}}) {
       PatchShape shape{3, 3, {}, false};
-      shape.collapsed.add(edge_of(side));
+      shape.collapsed.add(side);
       const Division division = Division::of(shape, asked, {asked.u + 2, asked.v, asked.u, asked.v + 2});
       const std::vector<StitchedPatchPlace> at = places(division);
       std::vector<std::uint32_t> indices(3 * division.triangle_count());

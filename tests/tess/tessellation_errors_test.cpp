@@ -182,13 +182,28 @@ TEST(TessellationErrors, StaleAfterAnEditOfThePoles) {
 TEST(TessellationErrors, AnotherSet) {
   Random random(6);
   const BezierPatch patch = random_polynomial(random, 3, 3);
-  const PatchSet set = set_of({patch, patch}), longer = set_of({patch, patch, patch});
-  const PatchSet other_degrees = set_of({patch, random_polynomial(random, 3, 2)});
+  PatchSet set = set_of({patch, patch});
+  const PatchSet longer = set_of({patch, patch, patch}), equal = set_of({patch, patch});
   const Tessellation plan = good(Tessellation::make(set, {.rates = UniformRates{}}));
   Untouched mesh(plan);
-  for (const PatchSet* other : {&longer, &other_degrees}) {
+  for (const PatchSet* other : {&longer, &equal}) {
     EXPECT_EQ(plan.run(*other, mesh.views()).code(), StatusCode::stale);
     EXPECT_TRUE(mesh.holds());
+  }
+  const PatchSet moved = std::move(set);
+  EXPECT_TRUE(plan.run(moved, mesh.views()).ok());
+}
+
+/// A set in the memory of one that is gone is another set.
+TEST(TessellationErrors, SetInTheMemoryOfAnother) {
+  const std::vector<BezierPatch> patches = wavy_field(1, 1);
+  std::optional<PatchSet> set(set_of(patches));
+  const Tessellation plan = good(Tessellation::make(*set, {.tolerance = 0.01}));
+  Mesh mesh = good(plan.allocate());
+  for (int k = 0; k < 8; ++k) {
+    set.reset();
+    set.emplace(set_of(patches));
+    EXPECT_EQ(plan.run(*set, mesh.views()).code(), StatusCode::stale);
   }
 }
 

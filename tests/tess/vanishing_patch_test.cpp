@@ -50,7 +50,8 @@ BezierPatch lens(double height) {
 
 TEST(VanishingPatch, NeedlesKeepTheirShortBorders) {
   for (const double width : {3e-6, 1e-7, 3e-3}) {
-    const TessellationOptions options{.tolerance = 1e-3, .weld = width > 1e-3 ? std::optional(0.01) : std::nullopt};
+    const TessellationOptions options{.tolerance = 1e-3,
+                                      .joining = {.weld = width > 1e-3 ? std::optional(0.01) : std::nullopt}};
     if (width < 1e-3) {
       EXPECT_EQ(checked_mesh({strip(width)}, options, "alone").triangle_count(), 2u);
       EXPECT_EQ(checked_mesh({strip(width), strip(1, 5)}, options, "beside another").triangle_count(), 4u);
@@ -58,14 +59,15 @@ TEST(VanishingPatch, NeedlesKeepTheirShortBorders) {
     // End to end: neither neighbour has triangles along the other's long borders.
     std::vector<BezierPatch> row;
     for (int k = 0; k < 4; ++k) row.push_back(placed({strip(width)}, 1, {double(k), 0, 0})[0]);
-    const TessellationOptions loose{.tolerance = 0.1, .weld = options.weld};
+    const TessellationOptions loose{.tolerance = 0.1, .joining = {.weld = options.joining.weld}};
     EXPECT_EQ(checked_mesh(row, loose, "a row").triangle_count(), 8u) << width;
   }
 }
 
 TEST(VanishingPatch, SpotsKeepTheirBorders) {
   const std::vector<BezierPatch> spot = placed({strip(1)}, 1e-3, {3, 3, 3});
-  EXPECT_EQ(checked_mesh({spot[0], strip(1)}, {.tolerance = 0.02, .weld = 0.01}, "a spot").triangle_count(), 4u);
+  EXPECT_EQ(
+      checked_mesh({spot[0], strip(1)}, {.tolerance = 0.02, .joining = {.weld = 0.01}}, "a spot").triangle_count(), 4u);
 }
 
 /// A needle between two patches is the edge that they have in common.
@@ -105,7 +107,7 @@ TEST(VanishingPatch, EditsLeaveNothingBehind) {
   for (const bool shares : {false, true}) {
     const std::vector<BezierPatch> patches{
         lens(1e-3), polynomial(2, 1, {{0, 0, 0}, {0, 2, 0}, {1, 1e-3, 0}, {1, 2, 0}, {2, 0, 0}, {2, 2, 0}})};
-    Animated body(patches, {.tolerance = 0.1, .share_vertices = shares});
+    Animated body(patches, {.tolerance = 0.1, .joining = {.share_vertices = shares}});
     EXPECT_EQ(body.mesh.triangle_count(), 2u);
     expect_within_bounds(body.set, body.plan, body.mesh, "as made");
     Edits away = moved(body.set, 1, [](const Vec3& p) { return p; });

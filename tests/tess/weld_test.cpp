@@ -15,7 +15,7 @@
 namespace tessera::test { namespace {
 
 Mesh welded_mesh(const PatchSet& set, double tolerance, double weld) {
-  return mesh_of(set, good(Tessellation::make(set, {.tolerance = tolerance, .weld = weld})));
+  return mesh_of(set, good(Tessellation::make(set, {.tolerance = tolerance, .joining = {.weld = weld}})));
 }
 
 /// Each patch raised to a degree of its own.
@@ -60,7 +60,7 @@ TEST(Weld, DegreesMayDiffer) {
 TEST(Weld, DoesNothingWhereBitsMeet) {
   for (const auto& body : {closed_body(), sphere()}) {
     const PatchSet set = set_of(body);
-    const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.01, .weld = 1e-6}));
+    const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.01, .joining = {.weld = 1e-6}}));
     EXPECT_EQ(plan.welded_borders(), 0u);
     const Mesh exact = welded_mesh(set, 0.01, 0), welded = mesh_of(set, plan);
     EXPECT_EQ(exact.positions, welded.positions);
@@ -75,7 +75,7 @@ TEST(Weld, TheBoundsKnowHowFarVerticesAreMoved) {
   for (const auto& body : {closed_body(), sphere()}) {
     const double by = 3e-3;
     const PatchSet set = set_of(shaken(body, by, 5));
-    const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.03, .weld = 4 * by}));
+    const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.03, .joining = {.weld = 4 * by}}));
     const Tessellation apart = good(Tessellation::make(set, {.tolerance = 0.03}));
     const Mesh mesh = mesh_of(set, plan);
     double most = 0, share = 0;
@@ -122,7 +122,7 @@ TEST(Weld, PolesThatAreNearlyPointsCountAsPoints) {
     patches.push_back(good(patch.with_points(points)));
   }
   const PatchSet set = set_of(patches);
-  ASSERT_FALSE(set.patch(0).collapsed_edges().any());
+  ASSERT_FALSE(set.patch(0).collapsed_sides().any());
   const Mesh apart = welded_mesh(set, 0.01, 0), mesh = welded_mesh(set, 0.01, 1e-6);
   EXPECT_GT(apart.triangle_count(), mesh.triangle_count());
   EXPECT_EQ(good(check(mesh)).degenerate_triangles, 0u);
@@ -141,8 +141,8 @@ TEST(Weld, FartherBordersAreLeftApart) {
   for (std::size_t k = 0; k < field.size(); ++k)
     patches.push_back(placed({field[k]}, 1, {0, 0, k == 3 ? 0.01 : 0.0})[0]);
   const PatchSet set = set_of(patches);
-  EXPECT_EQ(good(Tessellation::make(set, {.tolerance = 0.1, .weld = 0.0099})).welded_borders(), 0u);
-  EXPECT_EQ(good(Tessellation::make(set, {.tolerance = 0.1, .weld = 0.0101})).welded_borders(), 2u);
+  EXPECT_EQ(good(Tessellation::make(set, {.tolerance = 0.1, .joining = {.weld = 0.0099}})).welded_borders(), 0u);
+  EXPECT_EQ(good(Tessellation::make(set, {.tolerance = 0.1, .joining = {.weld = 0.0101}})).welded_borders(), 2u);
   const MeshReport report = good(check(welded_mesh(set, 0.05, 0.0101)));
   EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2);  // a disc
 }
@@ -154,7 +154,7 @@ TEST(Weld, PolynomialAndRationalBordersOfOneCurveMeet) {
   std::vector<double> weights(raised.points().size(), 1.0 / 3);
   for (std::size_t k = 3; k < weights.size(); k += 4) weights[k] = 0.5;  // of the far border
   const PatchSet set = set_of({field[0], rational(4, 3, {raised.points().begin(), raised.points().end()}, weights)});
-  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 1e-3, .weld = 1e-9}));
+  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 1e-3, .joining = {.weld = 1e-9}}));
   EXPECT_EQ(plan.welded_borders(), 1u);
   const MeshReport report = good(check(mesh_of(set, plan)));
   EXPECT_EQ(2 * report.distinct_positions, report.triangles + report.open_edges + 2);
@@ -162,7 +162,7 @@ TEST(Weld, PolynomialAndRationalBordersOfOneCurveMeet) {
 
 TEST(Weld, RunsAgainAfterAnEdit) {
   PatchSet set = set_of(shaken(closed_body(), 1e-6, 2));
-  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.02, .weld = 1e-5}));
+  const Tessellation plan = good(Tessellation::make(set, {.tolerance = 0.02, .joining = {.weld = 1e-5}}));
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     std::vector<Vec3> points(set.patch(k).points().begin(), set.patch(k).points().end());
     for (Vec3& p : points) p.x *= 1.25;
@@ -174,23 +174,23 @@ TEST(Weld, RunsAgainAfterAnEdit) {
 TEST(Weld, WrongLengthsAreRefused) {
   const PatchSet set = set_of(closed_body());
   for (const double weld : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    const auto plan = Tessellation::make(set, {.tolerance = 0.1, .weld = weld});
+    const auto plan = Tessellation::make(set, {.tolerance = 0.1, .joining = {.weld = weld}});
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.status().message().find("it must be finite and at least 0"), std::string::npos);
   }
   // Moved further than the tolerance permits.
   const PatchSet apart = set_of(shaken(closed_body(), 0.01, 1));
-  const auto plan = Tessellation::make(apart, {.tolerance = 0.005, .weld = 0.04});
+  const auto plan = Tessellation::make(apart, {.tolerance = 0.005, .joining = {.weld = 0.04}});
   ASSERT_FALSE(plan.ok());
   EXPECT_NE(plan.status().message().find("the displacement of welded float vertices"), std::string::npos)
       << plan.status().message();
   for (const double weld : {0.5, 1e300}) {
-    const auto plan_of_all = Tessellation::make(apart, {.tolerance = 0.05, .weld = weld});
+    const auto plan_of_all = Tessellation::make(apart, {.tolerance = 0.05, .joining = {.weld = weld}});
     ASSERT_FALSE(plan_of_all.ok());
     EXPECT_NE(plan_of_all.status().message().find("a twentieth of the model's size"), std::string::npos);
   }
   for (const double weld : {1e-300, 5e-324})
-    EXPECT_TRUE(Tessellation::make(apart, {.tolerance = 0.05, .weld = weld}).ok());
+    EXPECT_TRUE(Tessellation::make(apart, {.tolerance = 0.05, .joining = {.weld = weld}}).ok());
 }
 
 TEST(SideCurve, TheDistanceBoundIsNotExceeded) {

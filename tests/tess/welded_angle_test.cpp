@@ -54,7 +54,7 @@ TEST(WeldedAngle, HoldsForTheSurfaceOrIsNotClaimed) {
     const double length = std::pow(10.0, uniform(random, -3.5, -1.5));
     const PatchSet set = set_of({with_short_border(random, length)});
     TessellationOptions options{.angle = uniform(random, 0.1, 0.5), .angle_rate = 8, .max_triangles = 20000};
-    if (k % 2) options.weld = std::min(4 * length, 0.049 * set.box().diagonal());
+    if (k % 2) options.joining.weld = std::min(4 * length, 0.049 * set.box().diagonal());
     const auto plan = Tessellation::make(set, options);
     if (!plan) continue;
     const bool is_welded = plan->welded_borders() > 0, has_bound = std::isfinite(plan->angles()[0]);
@@ -74,7 +74,7 @@ TEST(WeldedAngle, HoldsForTheSurfaceOrIsNotClaimed) {
 /// A flat patch with a short border has normals that do not turn, welded or not.
 TEST(WeldedAngle, OfAFlatPatchIsProven) {
   const PatchSet set = set_of({polynomial(1, 1, {{0, 0, 0}, {-0.5, 1, 0}, {1e-3, 0, 0}, {0.5, 1, 0}})});
-  const Tessellation plan = good(Tessellation::make(set, {.angle = 0.1, .weld = 0.01}));
+  const Tessellation plan = good(Tessellation::make(set, {.angle = 0.1, .joining = {.weld = 0.01}}));
   EXPECT_EQ(plan.welded_borders(), 1u);
   EXPECT_EQ(plan.patches_without_angle(), 0u);
   EXPECT_LE(plan.angle(), 1e-3);
@@ -91,7 +91,7 @@ TEST(WeldedAngle, NoisyPolesCostNoTriangles) {
     for (std::size_t j = 6; j < 9; ++j) points[j] = points[j] + 1e-7 * uniform_vector(random, -1, 1);
     noisy.push_back(good(patch.with_points(points)));
   }
-  const TessellationOptions options{.angle = 0.1, .weld = 1e-6};
+  const TessellationOptions options{.angle = 0.1, .joining = {.weld = 1e-6}};
   const Tessellation plan = good(Tessellation::make(set_of(noisy), options));
   EXPECT_EQ(plan.patches_without_angle(), 8u);
   EXPECT_EQ(plan.angle(), 0);

@@ -54,8 +54,8 @@ TEST(ClosedEdges, VerticesStandWhereTheShapeStatesThem) {
   }
 }
 
-/// The triangle a, b, c as a face with a pole at c, on side 0 .. 3 of its domain. Its patches meet at `lines`, shares of
-/// the way to c.
+/// The triangle a, b, c as a face with a pole at c, on side 0 .. 3 of its domain. Its patches meet at `lines`, shares
+/// of the way to c.
 ModelSurface triangle_face(const Vec3& a, const Vec3& b, const Vec3& c, unsigned side, std::vector<double> lines) {
   const bool is_last = side % 2 == 0, along_u = side < 2;
   lines.insert(lines.begin(), 0), lines.push_back(1);

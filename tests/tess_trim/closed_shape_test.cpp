@@ -114,15 +114,15 @@ TEST(ClosedShape, EdgesWiderThanTheLargestGapStayOpen) {
   std::mt19937_64 random(7);
   const Shape shape = displaced(joined(drilled_plate(), 1e-6), 1e-2, random);
   const ShapeMesh closed = mesh_of(shape, {.tolerance = 1e-3}),
-                  open = mesh_of(shape, {.tolerance = 1e-3, .max_gap = 1e-4});
+                  open = mesh_of(shape, {.tolerance = 1e-3, .joining = {.max_gap = 1e-4}});
   expect_closed(closed, "any gap");
   EXPECT_GT(closed.gap, 1e-3);
   EXPECT_LE(open.gap, 1e-4);
   EXPECT_GT(open.report.open_edges, 20u);
   EXPECT_EQ(open.report.open_edges, open.open_edges);
   const Shape exact = joined(drilled_plate(), 1e-6);
-  expect_closed(mesh_of(exact, {.tolerance = 1e-3, .max_gap = 1e-6}), "no gap");
-  const ShapeMesh apart = mesh_of(exact, {.tolerance = 1e-3, .close_edges = false});
+  expect_closed(mesh_of(exact, {.tolerance = 1e-3, .joining = {.max_gap = 1e-6}}), "no gap");
+  const ShapeMesh apart = mesh_of(exact, {.tolerance = 1e-3, .joining = {.close_edges = false}});
   EXPECT_GT(apart.report.open_edges, 20u);
   EXPECT_TRUE(apart.edge_gaps.empty());
 }
@@ -173,7 +173,7 @@ TEST(ClosedShape, LoopsWithoutCoedgesStayOpen) {
   std::vector<TrimLoop> loops = *shape.faces[0].trims;
   for (TrimLoop& loop : loops) loop.coedges.clear();
   shape.faces[0].trims = std::move(loops);
-  const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3, .weld = 0});
+  const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3, .joining = {.weld = 0}});
   EXPECT_GT(made.open_edges, 30u);
   EXPECT_EQ(made.report.non_finite_vertices, 0u);
 }
@@ -315,7 +315,8 @@ TEST(ClosedShape, MeshesFollowEdits) {
 TEST(ClosedShape, VerticesAreSharedByIndexOnRequest) {
   const Shape shape = joined(drilled_plate(), 1e-6);
   for (const std::optional<double> crease : {std::optional<double>(), std::optional<double>(4.0 / 5)}) {
-    const ShapeMesh made = mesh_of(shape, {.tolerance = 1e-3, .crease_angle = crease, .share_vertices = true});
+    const ShapeMesh made =
+        mesh_of(shape, {.tolerance = 1e-3, .joining = {.crease_angle = crease, .share_vertices = true}});
     expect_closed(made, "shared");
     EXPECT_EQ(made.mesh.normals.empty(), !crease);
     EXPECT_LT(made.mesh.vertex_count(), mesh_of(shape, {.tolerance = 1e-3}).mesh.vertex_count());
@@ -334,8 +335,8 @@ TEST(ClosedShape, VerticesAreSharedByIndexOnRequest) {
 /// A rounded edge: the normals of fillet and faces are one where they touch, those at sharp edges are not.
 TEST(ClosedShape, NormalsAreJoinedAtSmoothEdges) {
   const Shape shape = joined(drilled_plate(), 1e-6);
-  const ShapeMesh sharp = mesh_of(shape, {.tolerance = 1e-3, .crease_angle = 0.1});
-  const ShapeMesh round = mesh_of(shape, {.tolerance = 1e-3, .crease_angle = std::numbers::pi});
+  const ShapeMesh sharp = mesh_of(shape, {.tolerance = 1e-3, .joining = {.crease_angle = 0.1}});
+  const ShapeMesh round = mesh_of(shape, {.tolerance = 1e-3, .joining = {.crease_angle = std::numbers::pi}});
   std::map<std::array<float, 3>, std::vector<Vec3>> at_sharp, at_round;
   const auto collect = [](const Mesh& mesh, auto& at) {
     for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
@@ -365,7 +366,7 @@ TEST(ClosedShape, AnglesPixelsDoublesAndQuadsAreClosed) {
   expect_closed(mesh_of(shape, {.pixels = PixelTolerance{0.5, view}}), "pixels");
   expect_closed(mesh_of(shape, {.tolerance = 1e-3, .precision = Precision::double_precision}), "doubles");
   expect_closed(mesh_of(shape, {.tolerance = 1e-3, .fewest = true}), "fewest");
-  expect_closed(mesh_of(shape, {.tolerance = 1e-3, .crease_angle = 0.1}), "creases");
+  expect_closed(mesh_of(shape, {.tolerance = 1e-3, .joining = {.crease_angle = 0.1}}), "creases");
   const ShapeMesh quads = mesh_of(shape, {.tolerance = 1e-3, .quads = true});
   EXPECT_TRUE(quads.report.closed());
   EXPECT_EQ(quads.report.t_junctions, 0u);

@@ -70,7 +70,7 @@ TEST(EditedFaces, CutPatchesFollowNeighboursThatAreWelded) {
     model.surfaces.push_back({.name = {}, .surface = polynomial(3, 3, whole)});
     model.surfaces.push_back({.name = {}, .surface = polynomial(3, 3, third)});
     const PatchSet set = value_of(make_patch_set(model));
-    const Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 0.02, .weld = 2 * apart}));
+    const Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 0.02, .joining = {.weld = 2 * apart}}));
     EXPECT_EQ(plan.welded_borders(), 1u);
     const Mesh mesh = written(set, plan);
     const auto of_cut = vertices_at(mesh, 0, 0, 1);
@@ -92,8 +92,8 @@ void follow_edits(const Make& make, std::uint64_t seed, int edits) {
   PatchSet set = make();
   const double size = set.box().diagonal();
   TessellationOptions options{.tolerance = size * std::pow(10.0, uniform(random, -3, -1.5)), .spare = 0};
-  options.share_vertices = seed % 2;
-  if (seed % 3 == 0) options.crease_angle = 0.3;
+  options.joining.share_vertices = seed % 2;
+  if (seed % 3 == 0) options.joining.crease_angle = 0.3;
   options.quads = seed % 5 == 0;
   if (seed % 4 == 3) options.precision = Precision::double_precision;
   auto made = Tessellation::make(set, options);

@@ -164,8 +164,8 @@ TrimLoop arcs(const ParameterPoint& centre, double radius, int count) {
   return loop;
 }
 
-// A chord over many pieces ends where one of them does. At 1e-3 the circle has 72 chords, as long as 5.6 of 400 pieces; chords
-// of 5 pieces are 80, a ninth more.
+// A chord over many pieces ends where one of them does. At 1e-3 the circle has 72 chords, as long as 5.6 of 400 pieces;
+// chords of 5 pieces are 80, a ninth more.
 TEST(TrimmedFace, OfLoopsInManyPiecesHasFewMoreTriangles) {
   Face many(plane(), {arcs({2, 1.5}, 1, 400)}), few(plane(), {circle({2, 1.5}, 1)});
   for (const double tolerance : {1e-1, 1e-2, 1e-3})

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tess_trim/trimmed_face.h"
+#include "tessera/tessellate.h"
 #include "trim/trim_shapes.h"
 
 namespace tessera::test { namespace {
@@ -56,7 +57,7 @@ TEST(TrimmedFace, KeepsAnglesAndPixels) {
 TEST(TrimmedFace, KeepsBudgetsAndNamesItsParts) {
   Face face(wavy(), {circle({1.9, 1.4}, 1.15, true)});
   for (const std::uint64_t budget : {300, 3000}) {
-    const Tessellation plan = value_of(Tessellation::make(face.set, {.max_triangles = budget, .smallest = true}));
+    const Tessellation plan = value_of(Tessellation::make(face.set, {.budget = budget}));
     EXPECT_LE(plan.capacity().triangles, budget);
     EXPECT_GT(plan.capacity().triangles, budget / 2);
     EXPECT_LE(plan.bound(), plan.tolerance());
@@ -90,14 +91,14 @@ TEST(TrimmedFace, HasQuadsWhereCellsAreWhole) {
 TEST(TrimmedFace, HasDoublePositionsAndJoinedNormals) {
   Face face(wavy(), {circle({0.5, 0.5}, 0.3, true)});
   const Mesh exact = face.mesh({.tolerance = 1e-4, .precision = Precision::double_precision});
-  ASSERT_EQ(exact.positions_f64.size(), exact.positions.size());
+  ASSERT_EQ(exact.model_positions.size(), exact.positions.size());
   for (std::size_t k = 0; k < exact.positions.size(); ++k) {
     const Vec3 origin = exact.origin;
     const double shift = k % 3 == 0 ? origin.x : k % 3 == 1 ? origin.y : origin.z;
-    ASSERT_NEAR(exact.positions_f64[k], double(exact.positions[k]) + shift, 1e-6);
+    ASSERT_NEAR(exact.model_positions[k], double(exact.positions[k]) + shift, 1e-6);
   }
   // Vertices at one place have one normal, as the surface is smooth.
-  const Mesh smooth = face.mesh({.tolerance = 1e-3, .crease_angle = 0.1});
+  const Mesh smooth = face.mesh({.tolerance = 1e-3, .joining = {.crease_angle = 0.1}});
   std::map<std::array<float, 3>, std::array<float, 3>> normals;
   for (std::size_t k = 0; k < smooth.vertex_count(); ++k) {
     const auto triple = [&](const std::vector<float>& of) {
@@ -161,6 +162,7 @@ TEST(TrimmedFace, OfAnUnusableLoopIsWholeAndNamed) {
   EXPECT_EQ(set.trim_faults()[0].index(), 1);
   EXPECT_EQ(set.trim_faults()[0].message().rfind("surface 1 (face): loop 0 ", 0), 0u) << set.trim_faults()[0].message();
   EXPECT_EQ(set.patch_count(), 24u);
+  EXPECT_EQ(tessellate(model, {.tolerance = 0.01}).status().message(), set.trim_faults()[0].message());
 }
 
 }}  // namespace tessera::test

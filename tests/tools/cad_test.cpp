@@ -52,7 +52,7 @@ TEST_F(CadTool, HitsTellTheFaceAndWhetherTheRayPassesAnEdge) {
                "100,-220,205,100,200,150\n");
   const json facts = json::parse(output_of({"raycast", block, "--rays", "rays.csv", "--hits", "a.csv", "--json"}));
   EXPECT_EQ(facts["hits"], 2);
-  EXPECT_EQ(facts["seam"], 1);
+  EXPECT_EQ(facts["edge"], 1);
   const auto rows = cells_of(content_of(folder_ / "a.csv"));
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[1][13], "1");

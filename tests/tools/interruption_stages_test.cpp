@@ -1,4 +1,5 @@
-// A request to terminate and Ctrl-C end the tool within a second, whatever it does: each command, in each of its stages.
+// A request to terminate and Ctrl-C end the tool within a second, whatever it does: each command, in each of its
+// stages.
 
 #include <sys/stat.h>
 

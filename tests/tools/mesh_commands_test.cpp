@@ -19,7 +19,7 @@ TEST_F(MeshTools, InfoSaysWhatTheTeapotIs) {
   EXPECT_EQ(facts["fit_error"]["distance"], 0);
   EXPECT_EQ(facts["degrees"], json::parse(R"([{"degree_u": 3, "degree_v": 3, "patches": 32}])"));
   EXPECT_EQ(facts["rational_patches"], 0);
-  EXPECT_EQ(facts["collapsed_edges"], 8);
+  EXPECT_EQ(facts["collapsed_sides"], 8);
   EXPECT_EQ(facts["control_points"], 512);
   EXPECT_EQ(facts["box"]["lower"], json::parse("[-3.0, -2.0, 0.0]"));
   EXPECT_EQ(facts["box"]["upper"], json::parse("[3.525, 2.0, 3.15]"));

@@ -188,7 +188,7 @@ TEST_F(RaycastTool, HitsLieOnTheirSurfacesAndRays) {
   const auto rows = cells_of(content_of(folder_ / "hits.csv"));
   ASSERT_EQ(rows.size(), rays.size() + 1);
   EXPECT_EQ(rows[0],
-            (Names{"ray", "hit", "t", "surface", "patch", "u", "v", "x", "y", "z", "nx", "ny", "nz", "seam", "name"}));
+            (Names{"ray", "hit", "t", "surface", "patch", "u", "v", "x", "y", "z", "nx", "ny", "nz", "edge", "name"}));
   const Result<Model> model = read_model(teapot);
   ASSERT_TRUE(model.ok());
   std::size_t hits = 0;

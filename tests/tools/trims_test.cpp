@@ -127,7 +127,7 @@ TEST_F(Trims, HitsNameTheirFaces) {
   folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0.5,0.5,5,0,0,-1\n2.5,0.5,5,0,0,-1\n9,9,5,0,0,-1\n");
   output_of({"raycast", "named.json", "--rays", "rays.csv", "--hits", "hits.csv"});
   const std::string table = content_of(folder_ / "hits.csv");
-  EXPECT_NE(table.find("nz,seam,name\n"), std::string::npos);
+  EXPECT_NE(table.find("nz,edge,name\n"), std::string::npos);
   EXPECT_NE(table.find(",0,wall\n"), std::string::npos);
   EXPECT_NE(table.find(",0,\"bore, \"\"left\"\"\"\n"), std::string::npos);
   EXPECT_NE(table.find("\n2,0,,,,,,,,,,,,,\n"), std::string::npos);

@@ -231,7 +231,8 @@ TEST(TrimRegion, LoopsAtADistanceOf1e12) {
 
 TEST(TrimRegion, LoopsThatTouchTheDomainAndEachOther) {
   std::mt19937 random(7);
-  // Holes that touch the border and each other, curves along lines between patches, a loop of one edge, coincident ones.
+  // Holes that touch the border and each other, curves along lines between patches, a loop of one edge, coincident
+  // ones.
   const std::vector<TrimLoop> loops{test::rectangle(0, 1, 0, 1),
                                     test::circle({0.25, 0.25}, 0.25),
                                     test::circle({0.75, 0.25}, 0.25),

@@ -11,8 +11,8 @@ namespace tessera::render {
 namespace {
 
 Vec3 position(const Mesh& mesh, std::size_t vertex) {
-  if (!mesh.positions_f64.empty()) {
-    const double* const p = &mesh.positions_f64[3 * vertex];
+  if (!mesh.model_positions.empty()) {
+    const double* const p = &mesh.model_positions[3 * vertex];
     return {p[0], p[1], p[2]};
   }
   const float* const p = &mesh.positions[3 * vertex];

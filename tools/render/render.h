@@ -74,9 +74,9 @@ Result<Image> render(const RayScene& scene, const Box3& box, const Settings& set
 /// Height of the bands of render_bands(), in pixels.
 inline constexpr int band_height = 8;
 
-/// Renders the same picture as render(), as far as next_band() names its bands of rows, from 0 on from the top; until it
-/// names one below the picture. Other pixels stay black. So several processes can share a picture. Errors: as render(),
-/// and those of next_band(), which is called on this thread.
+/// Renders the same picture as render(), as far as next_band() names its bands of rows, from 0 on from the top; until
+/// it names one below the picture. Other pixels stay black. So several processes can share a picture. Errors: as
+/// render(), and those of next_band(), which is called on this thread.
 Result<Image> render_bands(const RayScene& scene, const Box3& box, const Settings& settings,
                            const std::function<Result<std::uint64_t>()>& next_band, const Execution& execution = {});
 

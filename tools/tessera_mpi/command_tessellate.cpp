@@ -171,10 +171,10 @@ void check_local(const MeshOptions& options) {
   const auto refuse = [](const char* option) {
     throw UsageError(option, "decides for the whole mesh, of which each rank has a part: use tessera tessellate");
   };
-  if (mesh.smallest) refuse("--triangles");
+  if (mesh.budget) refuse("--triangles");
   if (mesh.fewest) refuse("--fewest");
-  if (mesh.crease_angle) refuse("--crease");
-  if (mesh.share_vertices) refuse("--share-vertices");
+  if (mesh.joining.crease_angle) refuse("--crease");
+  if (mesh.joining.share_vertices) refuse("--share-vertices");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 // Operations on Bezier patches, polynomial and rational: curves on them, derivatives, subdivision, degree elevation,
-// reorientation, makers of simple patches; measuring and making smooth joins of two patches along an edge.
+// reorientation, makers of simple patches; measuring and making smooth joins of two patches along a side.
 //
 // Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
@@ -34,8 +34,8 @@ Result<BezierPolygon> u_line(const BezierPatch& patch, double v);
 /// Returns the isocurve u = const along v, 0 <= u <= 1: Q_j = sum_i V_ij B_i(u). Errors: as for u_line().
 Result<BezierPolygon> v_line(const BezierPatch& patch, double u);
 /// Returns a border curve, whose points are a border of the net: u0 and u1 run along v, v0 and v1 along u. Errors:
-/// invalid_argument (not exactly one edge).
-Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Edge edge);
+/// invalid_argument (no such side).
+Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Side side);
 
 /// Returns the derivative of order a in u and b in v, any order >= 0, as a Bezier patch of degree (m - a, n - b) on the
 /// differences of the net: (1,0) is r_u, (1,1) is r_uv, (0,2) is r_vv. A direction in which the derivative is constant
@@ -88,10 +88,10 @@ Result<BezierPatch> make_hyperbolic_paraboloid(const Vec3& r00, const Vec3& r01,
 
 /// @}
 
-/// One side of a join: a patch, one of its edges, and the rectangle of parameters that the patch covers.
-struct JoinSide {
+/// One of the two patches of a join: its side there, and the rectangle of parameters that the patch covers.
+struct JoinedPatch {
   const BezierPatch& patch;  ///< referenced; must outlive the call
-  Edge edge = Edge::u1;      ///< the joined border
+  Side side = Side::u1;      ///< that is joined
   Domain domain = {};        ///< derivatives are by its parameters
 };
 
@@ -110,7 +110,7 @@ enum class Continuity : std::uint8_t {
   c1,    ///< and so are the derivatives across the border
 };
 
-/// Report on a join: maxima along the whole border, at equal fractions of the two edges.
+/// Report on a join: maxima along the whole border, at equal fractions of the two sides.
 ///
 /// Each figure is an upper bound, proven by hulls of Bernstein coefficients (up to rounding: products of degree up to
 /// 8 * 15, a few hundred units of 2^-52 of the largest). It is at most 0.1 % or the stated floor above the true
@@ -124,27 +124,27 @@ struct JoinReport {
   /// derivatives.
   double derivative_gap = 0;
   std::optional<double> ratio;  ///< k > 0 with p_c = k q_c along the whole border, within the tolerance of derivatives
-  bool reversed = false;        ///< whether q's edge runs the other way
+  bool reversed = false;        ///< whether q's side runs the other way
   bool sharp = true;            ///< whether the bounds are as tight as stated
   Continuity continuity = Continuity::none;  ///< the highest that holds
 };
 
-/// Measures the join of p with q along one edge of each. Patches may have any degrees and be rational. q's edge may run
+/// Measures the join of p with q along one side of each. Patches may have any degrees and be rational. q's side may run
 /// with p's or against it: the nearer is taken. A normal that vanishes at an end of the border (a pole) is divided out
 /// there: its limit along the border counts.
 ///
-/// Errors: invalid_argument (no such edge, a domain that is empty, a tolerance that is negative or NaN), non_finite (a
+/// Errors: invalid_argument (no such side, a domain that is empty, a tolerance that is negative or NaN), non_finite (a
 /// domain).
-Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances = {});
+Result<JoinReport> measure_join(const JoinedPatch& p, const JoinedPatch& q, const JoinTolerances& tolerances = {});
 
-/// Returns q with its first two rows along the edge replaced so that p_c = k q_c, k > 0 (k = 1: C1): W_0j = V_mj,
-/// W_1j = W_0j + m_p len_q / (k m_q len_p) (V_mj - V_{m-1,j}), where len is the domain's width across the edge;
-/// rational patches in homogeneous form. If the degrees along the edge differ, the lower one is raised first. If q has
-/// degree 1 across the edge, its far border moves. `reversed`: whether q's edge runs the other way.
+/// Returns q with its first two rows along the side replaced so that p_c = k q_c, k > 0 (k = 1: C1): W_0j = V_mj,
+/// W_1j = W_0j + m_p len_q / (k m_q len_p) (V_mj - V_{m-1,j}), where len is the domain's width across the side;
+/// rational patches in homogeneous form. If the degrees along the side differ, the lower one is raised first. If q has
+/// degree 1 across the side, its far border moves. `reversed`: whether q's side runs the other way.
 ///
 /// Errors: as for measure_join(); invalid_argument or non_finite (k), invalid_weight (a new weight is not positive: k
 /// is too small).
-Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k = 1, bool reversed = false);
+Result<BezierPatch> make_join(const JoinedPatch& p, const JoinedPatch& q, double k = 1, bool reversed = false);
 
 }}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -61,8 +61,8 @@ class BezierPatch {
 
   /// Returns the box of the control points, which contains the patch.
   Box3 hull_box() const;
-  /// Returns the edges whose control points all coincide (by ==): the patch has a pole there.
-  EdgeMask collapsed_edges() const;
+  /// Returns the sides whose control points all coincide (by ==): the patch has a pole there.
+  SideMask collapsed_sides() const;
 
  private:
   BezierPatch() = default;
@@ -104,7 +104,7 @@ SurfaceJet evaluate_jet(const BezierPatch& patch, double u, double v);
 /// How a unit normal was found.
 enum class NormalKind : std::uint8_t {
   regular,    ///< r_u x r_v / |r_u x r_v|
-  limit,      ///< the limit at a degenerate point (a collapsed edge, parallel tangents)
+  limit,      ///< the limit at a degenerate point (a collapsed side, parallel tangents)
   undefined,  ///< there is none; the vector is zero
 };
 /// A direction of length 1, and how it was found.
@@ -113,7 +113,7 @@ struct UnitNormal {
   NormalKind kind = NormalKind::undefined;  ///< regular, a limit, or undefined
 };
 /// Returns the unit normal at (u,v) in [0,1]^2. Where r_u x r_v vanishes, it is the one-sided limit from inside the
-/// patch along the parameter that leads away from the collapsed edge (from r_u and r_uv, or r_v and r_uv).
+/// patch along the parameter that leads away from the collapsed side (from r_u and r_uv, or r_v and r_uv).
 UnitNormal unit_normal(const BezierPatch& patch, double u, double v);
 
 }}  // namespace tessera::abi_0_1

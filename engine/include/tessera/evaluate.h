@@ -180,8 +180,8 @@ struct PatchSamples {
 /// Evaluates all samples. Derivatives are by the patch's parameters.
 ///
 /// A set without BlockKinds::float_points (double_points) packs these coefficients at the first call, and at the first
-/// one after each edit. Samples may come in any order; those sorted by patch, a dozen or more per patch, run up to twice
-/// as fast. Arrays (views of stride 1) are read in place, other views are copied first.
+/// one after each edit. Samples may come in any order; those sorted by patch, a dozen or more per patch, run up to
+/// twice as fast. Arrays (views of stride 1) are read in place, other views are copied first.
 ///
 /// Errors, with nothing written: buffer_too_small, count_mismatch (fewer u or v than patches), invalid_argument (no
 /// output; a view that lacks a component, is misaligned, has a stride below 1, or overlaps another; index = the sample:

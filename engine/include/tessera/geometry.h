@@ -152,19 +152,19 @@ struct Domain {
   friend bool operator==(const Domain&, const Domain&) = default;
 };
 
-/// An edge of a patch; also a bit of EdgeMask.
-enum class Edge : std::uint8_t { u0 = 1, u1 = 2, v0 = 4, v1 = 8 };
+/// A side of a patch, counter-clockwise around its parameters from (0,0): v = 0, u = 1, v = 1, u = 0.
+enum class Side : std::uint8_t { v0, u1, v1, u0 };
 
-/// A set of edges.
-struct EdgeMask {
-  std::uint8_t bits = 0;  ///< one bit per edge, with the values of Edge
-  /// Whether the set contains the edge.
-  bool has(Edge edge) const { return (bits & static_cast<std::uint8_t>(edge)) != 0; }
-  /// Adds the edge to the set.
-  void add(Edge edge) { bits = static_cast<std::uint8_t>(bits | static_cast<std::uint8_t>(edge)); }
-  bool any() const { return bits != 0; }  ///< whether the set contains an edge
+/// A set of sides.
+struct SideMask {
+  std::uint8_t bits = 0;  ///< bit k: the side whose value is k
+  /// Whether the set contains the side.
+  bool has(Side side) const { return (bits >> static_cast<int>(side) & 1) != 0; }
+  /// Adds the side to the set.
+  void add(Side side) { bits = static_cast<std::uint8_t>(bits | 1 << static_cast<int>(side)); }
+  bool any() const { return bits != 0; }  ///< whether the set contains a side
 
-  friend bool operator==(const EdgeMask&, const EdgeMask&) = default;
+  friend bool operator==(const SideMask&, const SideMask&) = default;
 };
 
 }}  // namespace tessera::abi_0_1

@@ -26,7 +26,7 @@ struct MeshCapacity {
 
 /// Where a mesh is written. An empty view leaves its attribute out; positions and indices are required.
 struct MeshViews {
-  View3<float> position = {};             ///< relative to the origin of the patch set; required without position_f64
+  View3<float> position = {};             ///< relative to the origin of the patch set; required without model_position
   View3<float> normal = {};               ///< unit, or zero where undefined
   View2<float> parameter = {};            ///< (u,v) of the patch, in [0,1]^2
   std::span<std::uint32_t> patch = {};    ///< the patch of each triangle
@@ -37,7 +37,7 @@ struct MeshViews {
   std::span<std::uint32_t> quad_patch = {};  ///< the patch of each quad
   /// Positions in double, in the model's coordinates. Required by plans with positions in double, and must be empty for
   /// all others: see TessellationOptions::precision.
-  View3<double> position_f64 = {};
+  View3<double> model_position = {};
 };
 
 /// Triangles and quads that belong together, such as those of one surface.
@@ -59,7 +59,7 @@ struct Mesh {
   std::vector<std::uint32_t> quads;         ///< four per quad, the same way around; faces beside the triangles
   std::vector<std::uint32_t> quad_patches;  ///< empty, or one per quad
   std::vector<MeshPart> parts;              ///< empty, or runs one after the other that together are all faces
-  std::vector<double> positions_f64;        ///< empty, or as long as positions: positions in the model's coordinates
+  std::vector<double> model_positions;      ///< empty, or as long as positions: positions in the model's coordinates
 
   std::size_t vertex_count() const { return positions.size() / 3; }
   std::size_t triangle_count() const { return indices.size() / 3; }
@@ -82,7 +82,7 @@ struct Mesh {
 /// invalid_argument (a part that does not begin where the one before ends; index = the part).
 Result<Mesh> split_quads(const Mesh& mesh);
 
-/// The faults of a mesh, counted. Vertices at bit-equal positions count as one, by positions_f64 if there are any. A
+/// The faults of a mesh, counted. Vertices at bit-equal positions count as one, by model_positions if there are any. A
 /// quad counts as the two triangles that split_quads() makes of it.
 struct MeshReport {
   std::size_t vertices = 0;            ///< as stored

@@ -25,7 +25,7 @@ struct MeshTotals {
   bool normals = false;           ///< Mesh::normals
   bool parameters = false;        ///< Mesh::parameters
   bool patches = false;           ///< a patch for each face
-  bool double_positions = false;  ///< Mesh::positions_f64; of its own accord only write_mesh() writes doubles
+  bool double_positions = false;  ///< Mesh::model_positions; of its own accord only write_mesh() writes doubles
 
   /// Returns the totals of a mesh that is one piece.
   static MeshTotals of(const Mesh& mesh);
@@ -87,8 +87,8 @@ class PlyPieces {
   static Result<PlyPieces> make(OutputFile out, const MeshTotals& totals);
 
   const PlyLayout& layout() const { return layout_; }  ///< where each piece goes
-  /// Writes a piece. Pieces come in any order, each once. Errors: those of PlyLayout::check(); io_error and cancelled as
-  /// soon as a write has failed.
+  /// Writes a piece. Pieces come in any order, each once. Errors: those of PlyLayout::check(); io_error and cancelled
+  /// as soon as a write has failed.
   Status write(const Mesh& piece, const PiecePlace& place);
   /// Ends the file. Call it once, last. Errors: count_mismatch (the pieces are not all of the mesh), io_error,
   /// cancelled.
@@ -103,8 +103,8 @@ class PlyPieces {
 };
 
 /// Writes a .ply file of pieces in their order, before it is known how many come. The file has the bytes that
-/// write_mesh() gives the whole mesh, and appears whole, at commit(), or not at all. Records wait in files without a name
-/// beside it, which takes the room of the file twice. Memory: 3 MiB beside a piece.
+/// write_mesh() gives the whole mesh, and appears whole, at commit(), or not at all. Records wait in files without a
+/// name beside it, which takes the room of the file twice. Memory: 3 MiB beside a piece.
 class PlyStream {
  public:
   /// `out` is a file that nothing was written to. Errors: io_error (its folder), out_of_memory.
@@ -129,10 +129,9 @@ class PlyStream {
 };
 
 /// @name Pieces of VTK's kind
-/// An index sheet.pvtp and its pieces sheet_0000.vtp, sheet_0001.vtp and so on (PolyData, binary). ParaView and VTK read
-/// the index as one mesh, of any size. Positions are in the model's coordinates. Point data: Normals, and the
-/// parameters as TCoords; cell data: patch.
-/// @{
+/// An index sheet.pvtp and its pieces sheet_0000.vtp, sheet_0001.vtp and so on (PolyData, binary). ParaView and VTK
+/// read the index as one mesh, of any size. Positions are in the model's coordinates. Point data: Normals, and the
+/// parameters as TCoords; cell data: patch. @{
 
 /// Returns the file of a piece, beside the index. Errors: none; throws std::bad_alloc if memory runs out. Memory: the
 /// result.

@@ -44,17 +44,17 @@ struct ModelPart {
   FitError fit_error;                   ///< of the whole model
 };
 
-/// Returns the surfaces from `first` until `end` of a model, and two rings of those around them: all that touch one of
-/// them, and all that touch one of these. Surfaces touch if their boxes come within `reach` of each other in each
+/// Returns the surfaces from `first` until `end` of a model, and two rings around them: first the surfaces that touch
+/// these, then those that touch the first ring. Surfaces touch if their boxes come within `reach` of each other in each
 /// coordinate, or if they are of one instance and share an edge or a vertex. The second ring counts where welding moves
 /// the borders of the first, and where chords of a face cross and are divided.
 ///
 /// - `extents`: of the model.
 /// - `reach`: a length, at least 0; see part_reach().
 ///
-/// Errors: those of check_topology(); invalid_argument (a range that ends beyond the last surface or before it begins; a
-/// negative reach), count_mismatch (boxes), out_of_memory. Memory: surfaces share geometry with the whole; loops whose
-/// coedges have other numbers here are copied.
+/// Errors: those of check_topology(); invalid_argument (a range that ends beyond the last surface or before it begins;
+/// a negative reach), count_mismatch (boxes), out_of_memory. Memory: surfaces share geometry with the whole; loops
+/// whose coedges have other numbers here are copied.
 Result<ModelPart> part_of(const Model& model, const SurfaceExtents& extents, std::size_t first, std::size_t end,
                           double reach);
 

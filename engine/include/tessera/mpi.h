@@ -32,8 +32,8 @@ inline constexpr std::size_t max_mpi_piece = std::size_t{1} << 30;
 /// most implementations end all ranks when one is lost.
 Result<std::unique_ptr<Transport>> make_mpi_transport(MPI_Comm communicator, std::size_t piece_bytes = max_mpi_piece);
 
-/// A number that all ranks count with, such as that of the next tile to draw. It lies in rank 0's memory; other ranks do
-/// not wait for it there, unless MPI makes progress only within rank 0's calls.
+/// A number that all ranks count with, such as that of the next tile to draw. It lies in rank 0's memory; other ranks
+/// do not wait for it there, unless MPI makes progress only within rank 0's calls.
 class SharedCounter {
  public:
   /// Makes a counter at 0. Errors: as make_mpi_transport().

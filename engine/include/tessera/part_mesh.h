@@ -26,8 +26,8 @@ struct SurfaceSource {
 };
 
 /// Returns the distance within which other surfaces can change a part's mesh with these options: four times the largest
-/// distance at which borders are joined. `box`: the whole model's. A chain of more than four borders, each joined to the
-/// next, can reach farther; that is not looked for.
+/// distance at which borders are joined. `box`: the whole model's. A chain of more than four borders, each joined to
+/// the next, can reach farther; that is not looked for.
 double part_reach(const TessellationOptions& options, const Box3& box);
 
 /// The surfaces of a part, before they are loaded.
@@ -39,16 +39,17 @@ struct PartOutline {
 };
 
 /// Finds the surfaces around a run by the boxes that parts exchange: 32 bytes for each surface that comes near another
-/// part's box, 72 for each that is found, and 100 bytes for each pair of parts. All parts call it, with equal options and with runs that together
-/// are the whole model, in the order of the parts; a run may be empty. The run's surfaces are read once and not kept.
+/// part's box, 72 for each that is found, and 100 bytes for each pair of parts. All parts call it, with equal options
+/// and with runs that together are the whole model, in the order of the parts; a run may be empty. The run's surfaces
+/// are read once and not kept.
 ///
 /// Errors, in all parts: invalid_argument (runs that leave a gap, overlap or end elsewhere than the model); those of
 /// read() and of surface_extents(), as "part 3: ..."; those of Transport::exchange(). Memory: the run's surfaces, later
 /// 50 bytes for each.
 Result<PartOutline> find_part(const SurfaceSource& source, const PartRun& run, const TessellationOptions& options,
                               Transport& transport, const FitOptions& fit = {});
-/// Reads the surfaces of a part, and those around it. Errors: those of read(), count_mismatch (it returned more or fewer
-/// surfaces, or instances).
+/// Reads the surfaces of a part, and those around it. Errors: those of read(), count_mismatch (it returned more or
+/// fewer surfaces, or instances).
 Result<ModelPart> load_part(const SurfaceSource& source, const PartOutline& outline);
 
 /// Counts of a mesh that is larger than 32-bit indices reach.
@@ -75,7 +76,7 @@ struct PartMesh {
 /// Meshes the wanted surfaces of a part, without other parts' help. A part without patches has an empty mesh.
 ///
 /// Errors: those of make_patch_set() and Tessellation::make() (index = the surface or patch, counted from the first of
-/// `part`); unsupported (share_vertices, a crease angle, `smallest` or `fewest`: these decide for the whole mesh).
+/// `part`); unsupported (share_vertices, a crease angle, a budget or `fewest`: these decide for the whole mesh).
 Result<PartMesh> tessellate_part(const ModelPart& part, const TessellationOptions& options,
                                  const Execution& execution = {}, const FitOptions& fit = {});
 

@@ -100,8 +100,8 @@ class PatchSet {
   std::size_t block_count() const;                     ///< blocks of all degrees together
   std::size_t cut_count() const;                       ///< how many patches trimming loops cut
   bool is_cut(std::size_t index) const;                ///< whether loops cut this one; index < patch_count()
-  /// Returns why the loops of some surfaces could not be used: "surface 3 (rim): loop 0 ..."; index = the surface. These
-  /// surfaces are kept whole.
+  /// Returns why the loops of some surfaces could not be used: "surface 3 (rim): loop 0 ..."; index = the surface.
+  /// These surfaces are kept whole.
   std::span<const Status> trim_faults() const;
   /// The place of a patch in block-interleaved output.
   struct Slot {

@@ -30,18 +30,18 @@ namespace tessera { inline namespace abi_0_1 {
 /// Hits: t is the float nearest to the root's, in [tnear, tfar]; primID is the patch; (u,v) is the place in the patch,
 /// [0,1]^2; Ng is the unit normal along r_u x r_v, in the object's space. RayScene::resolve() returns the rest.
 ///
-/// Rays: single rays and packets. Each ray is traced in double as it stands in the object's space, in the ray scene's own
-/// tree. The guarantees of exact mode hold for that ray, which Embree has transformed in float where the geometry is
-/// instanced; the scene's tolerance is a length of that space.
+/// Rays: single rays and packets. Each ray is traced in double as it stands in the object's space, in the ray scene's
+/// own tree. The guarantees of exact mode hold for that ray, which Embree has transformed in float where the geometry
+/// is instanced; the scene's tolerance is a length of that space.
 ///
 /// - The geometry is one primitive of Embree's, with a box around the whole scene, so the user's scene need not be
 ///   robust. The box is wide enough for Embree's rounding of rays that begin within 40,000 sizes of the scene.
 /// - Inactive lanes of a packet need tnear > tfar as well as valid = 0: Embree 3.13 ignores `valid` of 16-wide packets
 ///   on machines without AVX-512, whatever the geometry.
 ///
-/// Filters: those of the geometry and of the context (in Embree 4 of the arguments) get each root of the scene, from the
-/// nearest on, until one is accepted. A root at the border of two patches, or of two pieces of one, may come once for
-/// each.
+/// Filters: those of the geometry and of the context (in Embree 4 of the arguments) get each root of the scene, from
+/// the nearest on, until one is accepted. A root at the border of two patches, or of two pieces of one, may come once
+/// for each.
 ///
 /// Errors: invalid_argument (no device), unsupported (grid mode; a box that reaches beyond 1.844e18, or with a diagonal
 /// below 1e-15: Embree computes in float), stale, internal (Embree's own, which go to the device's error function).

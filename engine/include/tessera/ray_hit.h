@@ -53,7 +53,8 @@ struct HitFlags {
   /// Exact mode: the point lies on the ray within the tolerance, but it was not proven to be the only root of the
   /// surface near there. The ray touches the surface or runs along it (t is then good to about the square root of
   /// tolerance times size), meets a pole, or passes a border by less than the tolerance. Where it touches the border of
-  /// patches that fold over each other there, as at a convex edge, RayScene::all() has two hits, one of them so flagged.
+  /// patches that fold over each other there, as at a convex edge, RayScene::all() has two hits, one of them so
+  /// flagged.
   bool uncertified : 1 = false;
   /// Exact mode: the bound on the work for one piece of a patch was reached, as where a surface runs along the ray or
   /// is folded up into a line. There may be other hits, also for a miss.
@@ -65,7 +66,7 @@ struct HitFlags {
   /// Exact mode: the ray passes an edge of a shape within its gap, where the faces may leave a slit. A closest hit is
   /// the point of a face's loop there that is nearest to the ray. Hits of RayScene::all() are those of the ray moved
   /// sideways, out of the reach of edges. See RayScene::edge_gaps().
-  bool seam : 1 = false;
+  bool edge : 1 = false;
 };
 
 /// Where a ray meets a surface. For a miss or an invalid ray, only `kind` is meaningful; for a miss in exact mode also

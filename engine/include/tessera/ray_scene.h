@@ -22,6 +22,8 @@
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
 
+struct Model;
+
 /// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
   /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
@@ -31,11 +33,11 @@ enum class RayMode : std::uint8_t {
   grid,
   /// The surface itself, of the control points in double. Every intersection is found, also at shared borders and
   /// poles. Silhouettes are found down to the tolerance. A returned hit lies within the tolerance of the ray; hits that
-  /// are not flagged uncertified or seam are roots up to rounding. Rays meet what the loops of a trimmed face keep;
+  /// are not flagged uncertified or edge are roots up to rounding. Rays meet what the loops of a trimmed face keep;
   /// where a loop may pass on either side of a root, the hit is uncertified.
   ///
   /// Between the faces of a shape there may be slits along edges. In sets that are made of a shape or of a model with
-  /// instances, no ray slips through them: within an edge's gap, the edge itself is a hit (HitFlags::seam), unless the
+  /// instances, no ray slips through them: within an edge's gap, the edge itself is a hit (HitFlags::edge), unless the
   /// ray begins there. Other rays meet faces alone, those of a closed shell an even number of times. The gap is twice
   /// what samples show, not proven.
   ///
@@ -77,7 +79,7 @@ struct RaySceneOptions {
   bool editable = false;
   /// Exact mode: whether edges of shapes are hits, where rays pass them within their gap. If false, rays meet faces
   /// alone.
-  bool seams = true;
+  bool edges = true;
   int rebuild_after = 0;  ///< exact mode: n makes every n-th refit a rebuild; 0: none, 1: all
 };
 
@@ -95,8 +97,8 @@ struct RayInstance {
 
 /// A patch set prepared for rays.
 ///
-/// Memory: the set must outlive the scene (it may be moved), because the scene refers to the set's inner state. After
-/// an edit of the set the scene is stale until refit() or rebuild(), and its queries fail.
+/// Memory: a set that the scene does not keep itself must outlive it (it may be moved), because the scene refers to the
+/// set's inner state. After an edit of the set the scene is stale until refit() or rebuild(), and its queries fail.
 ///
 /// Threads: const calls from any number of threads; edits of the set, refit and rebuild exclude them and each other.
 class RayScene {
@@ -112,9 +114,12 @@ class RayScene {
   /// Memory: memory_bytes(), and 128 bytes per patch more while the scene is made.
   static Result<RayScene> make(const PatchSet& set, const RaySceneOptions& options = {},
                                const Execution& execution = {});
-  /// Deleted: the set must outlive the scene.
-  static Result<RayScene> make(PatchSet&& set, const RaySceneOptions& options = {},
-                               const Execution& execution = {}) = delete;
+  /// Makes a scene that keeps the set itself, for sets that are not edited. Errors: as above, with the set as it was.
+  static Result<RayScene> make(PatchSet&& set, const RaySceneOptions& options = {}, const Execution& execution = {});
+  /// Makes a scene of a model in one call. Errors: as above; those of make_patch_set(); the first of
+  /// PatchSet::trim_faults(), for loops that cannot be used (index = the surface).
+  static Result<RayScene> make(const Model& model, const RaySceneOptions& options = {},
+                               const Execution& execution = {});
 
   /// Makes a scene in grid mode whose facets are the triangles and quads of a mesh of the set, such as one that keeps a
   /// tolerance. Only the options `refine` and `isa` are used.
@@ -199,7 +204,7 @@ class RayScene {
   Status rebuild(const Execution& execution = {});
 
   /// Returns how far a hit's position may lie from its surface through rounding: the Ray::spawn_offset of secondary
-  /// rays. It does not hold for hits with `unrefined` or with flags of grid mode; for hits with `seam` add the edge's
+  /// rays. It does not hold for hits with `unrefined` or with flags of grid mode; for hits with `edge` add the edge's
   /// gap.
   double spawn_offset() const;
   /// Returns the curvatures at a hit of this scene, by the parameters of the patch; in a scene of instances those of

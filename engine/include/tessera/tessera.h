@@ -34,6 +34,7 @@
 #include "tessera/tensor_patch.h"
 #include "tessera/tessellate.h"
 #include "tessera/tessellation.h"
+#include "tessera/tessellation_options.h"
 #include "tessera/throw.h"
 #include "tessera/topology.h"
 #include "tessera/trim_loop.h"

@@ -352,7 +352,7 @@ enum {
   TSR_HIT_INCOMPLETE = 8,        /* there may be other hits */
   TSR_HIT_TANGENTIAL = 16,       /* uncertified, along the tangent plane */
   TSR_HIT_WITHIN_TOLERANCE = 32, /* uncertified, off the ray by more than rounding */
-  TSR_HIT_SEAM = 64              /* the ray passes an edge of a shape within its gap */
+  TSR_HIT_EDGE = 64              /* the ray passes an edge of a shape within its gap */
 };
 /* Hits, one record per ray. A miss has t = infinity, indices of 0xffffffff and 0 elsewhere. */
 typedef struct tsr_hits_out {

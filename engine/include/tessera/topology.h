@@ -17,8 +17,8 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// Checks all ids of a model, of vertices, edges, faces, solids, shapes, and the surfaces of instances; positions,
 /// ranges and tolerances must be finite. Each loop must have one coedge per curve, or none. A coedge's parameter must
-/// be monotone, in the coedge's direction, stated for the edge's range, and within the curve's domain there. edge_uses(),
-/// closed_shells() and edge_gaps() make this check of their shape.
+/// be monotone, in the coedge's direction, stated for the edge's range, and within the curve's domain there.
+/// edge_uses(), closed_shells() and edge_gaps() make this check of their shape.
 ///
 /// Errors: invalid_argument, as "shape 2 (nut): edge 7 ends at vertex 12, there are 12 vertices" (index = the shape or
 /// instance).

@@ -1,6 +1,6 @@
 #pragma once
-// Messages between the parts of a model: parts that take turns in one process, independent jobs with a folder in common,
-// the ranks of MPI (mpi.h), or a program's own way.
+// Messages between the parts of a model: parts that take turns in one process, independent jobs with a folder in
+// common, the ranks of MPI (mpi.h), or a program's own way.
 
 #include <atomic>
 #include <chrono>
@@ -51,9 +51,9 @@ class Transport {
 
   /// Sends messages[k] to part k, and returns the message of each part to this one, its own too.
   ///
-  /// Errors: count_mismatch (not one message per part), io_error (a part that is lost; a file), parse_error (a file that
-  /// is damaged, or of another run), invalid_argument (parts that make different calls), cancelled (a part that has
-  /// waited too long), out_of_memory.
+  /// Errors: count_mismatch (not one message per part), io_error (a part that is lost; a file), parse_error (a file
+  /// that is damaged, or of another run), invalid_argument (parts that make different calls), cancelled (a part that
+  /// has waited too long), out_of_memory.
   Result<std::vector<Message>> exchange(std::vector<Message> messages);
   /// Replaces each value by the largest of all parts, who must give as many. NaN counts as the largest, and 0 is larger
   /// than -0: all parts get the same bits. Errors: as exchange(), count_mismatch.
@@ -116,12 +116,13 @@ struct JobFolder {
 /// Jobs may begin at any time. A message is a file that gets its name when it is complete, and stays: a job that was
 /// killed, or that has waited too long, can be started again and then finds the messages that others sent meanwhile. It
 /// must do what it did before: a message that differs from the one that is there is an error. The folder must be empty
-/// when the first job of a run begins, and can be removed when all have ended. It takes one file for each part and call.
+/// when the first job of a run begins, and can be removed when all have ended. It takes one file for each part and
+/// call.
 ///
 /// `run`: a text that all jobs of a run have in common, such as the input and its options.
 ///
-/// Errors: invalid_argument (part or part_count; a time), io_error (the folder), parse_error (a folder of another number
-/// of parts, or of another run), out_of_memory. Threads: any number of calls.
+/// Errors: invalid_argument (part or part_count; a time), io_error (the folder), parse_error (a folder of another
+/// number of parts, or of another run), out_of_memory. Threads: any number of calls.
 Result<std::unique_ptr<Transport>> make_job_transport(const JobFolder& options, std::size_t part,
                                                       std::size_t part_count, std::string_view run);
 

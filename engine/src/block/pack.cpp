@@ -98,7 +98,7 @@ std::span<const double> RelativeNet::power(Power& memory) const {
   return net;
 }
 
-bool is_curve(const BezierPatch& patch, EdgeMask collapsed) {
+bool is_curve(const BezierPatch& patch, SideMask collapsed) {
   if (!collapsed.any()) return false;
   bool equal_rows = true, equal_columns = true;
   for (int i = 0; i <= patch.degree_u(); ++i)
@@ -162,7 +162,7 @@ bool PatchSet::Impl::pack_power(std::size_t index, const BlockGroup& group, cons
 bool PatchSet::Impl::pack_lanes(std::size_t index) {
   const BlockGroup& group = group_of_block(slots[index].block);
   const Box3 hull = patches[index].hull_box();
-  collapsed[index] = patches[index].collapsed_edges();
+  collapsed[index] = patches[index].collapsed_sides();
   return pack_bernstein(index, group, hull) && pack_points(index, group, hull) && pack_power(index, group, hull);
 }
 

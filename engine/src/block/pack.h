@@ -125,8 +125,8 @@ struct DegenerateNormalThreshold {
 };
 
 /// Whether all rows or all columns of the net are equal (for rational patches: both), so that r_u or r_v is zero
-/// everywhere. `collapsed`: patch.collapsed_edges(); equal rows have two collapsed ends.
-bool is_curve(const BezierPatch& patch, EdgeMask collapsed);
+/// everywhere. `collapsed`: patch.collapsed_sides(); equal rows have two collapsed ends.
+bool is_curve(const BezierPatch& patch, SideMask collapsed);
 
 /// The threshold of a patch that is a curve.
 inline constexpr DegenerateNormalThreshold no_normal{.squared_length = std::numeric_limits<double>::infinity(),

@@ -55,7 +55,7 @@ std::size_t PatchSet::Impl::pack_polynomials(std::size_t block, const kernel::Ke
   }
   if (kinds.double_bernstein) kernels.pack_f64(pack_job(group, block, nets.data(), copies, f64), found);
   for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
-    collapsed[indices[lane]] = found.edges_may_be_points ? patches[indices[lane]].collapsed_edges() : EdgeMask{};
+    collapsed[indices[lane]] = found.edges_may_be_points ? patches[indices[lane]].collapsed_sides() : SideMask{};
   boxes = found.boxes;
   const double limit = largest_coefficient(kinds.float_bernstein, 1);
   for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
@@ -69,7 +69,7 @@ void PatchSet::Impl::bound_block(std::size_t block, const kernel::KernelTable& k
   for (std::size_t lane = 0; lane < lanes; ++lane) nets[lane] = &patches[indices[lane]].points().front().x;
   kernels.bound_nets(nets.data(), 3 * patches[indices[0]].points().size(), boxes);
   for (std::size_t lane = 0; lane < lane_counts[block]; ++lane)
-    collapsed[indices[lane]] = patches[indices[lane]].collapsed_edges();
+    collapsed[indices[lane]] = patches[indices[lane]].collapsed_sides();
 }
 
 std::size_t PatchSet::Impl::pack_block(std::size_t block, const kernel::KernelTable& kernels,

@@ -67,7 +67,6 @@ struct PointsOnDemand {
   Coefficients<T> coefficients;
 };
 
-class MeshTables;
 struct PatchEdges;
 struct PatchTrims;
 
@@ -78,7 +77,7 @@ class PatchSet::Impl {
   std::vector<BezierPatch> patches;
   std::vector<PatchSource> sources;
   std::vector<Slot> slots;                  ///< `[patch]`
-  std::vector<EdgeMask> collapsed;          ///< `[patch]`
+  std::vector<SideMask> collapsed;          ///< `[patch]`
   std::vector<BlockGroup> groups;           ///< in the order of degree_u, degree_v, rational
   std::vector<std::uint32_t> lane_patches;  ///< `[block][lane]`: the patch there
   std::vector<std::uint8_t> lane_counts;    ///< `[block]`: lanes in use; the others repeat the block's first patch
@@ -92,10 +91,12 @@ class PatchSet::Impl {
   std::shared_ptr<const PatchTrims> trims;  ///< null if no patch is cut
   std::shared_ptr<const PatchEdges> edges;  ///< null if no face names edges
   std::vector<Status> trim_faults;          ///< one for each surface whose loops could not be used
+  /// Tells this set from all others, also from those that have its memory after it is gone: plans keep it.
+  const std::shared_ptr<const void> identity = std::make_shared<char>();
   std::uint64_t revision = 0;
   std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit
-  /// The tables that plans of this set share (tess/write/mesh_tables.h), without and with those of bicubic points.
-  mutable std::array<SharedSlot<MeshTables>, 2> mesh_tables;
+  /// What plans of this set share, of a type that they alone know, without and with tables of bicubic points.
+  mutable std::array<SharedSlot<void>, 2> plan_tables;
   mutable SharedSlot<PointsOnDemand<float>> f32_points;
   mutable SharedSlot<PointsOnDemand<double>> f64_points;
 
@@ -129,7 +130,7 @@ class PatchSet::Impl {
   template <class T>
   Result<std::shared_ptr<const Coefficients<T>>> points(const std::atomic<bool>* cancel) const;
 
-  /// Writes a patch's collapsed edges, its lane of every kind of block, and the unused lanes that repeat it. Returns
+  /// Writes a patch's collapsed sides, its lane of every kind of block, and the unused lanes that repeat it. Returns
   /// false, with the lanes half-written, if a coefficient does not fit. Allocates nothing.
   bool pack(std::size_t index);
   /// Does what pack() does, except for the value that all patches share, so that threads may pack different patches;
@@ -147,16 +148,16 @@ class PatchSet::Impl {
                                const PatchSetOptions& options);
 
  private:
-  /// Writes the Bernstein coefficients of a block of polynomial patches, their collapsed edges and boxes; result and
+  /// Writes the Bernstein coefficients of a block of polynomial patches, their collapsed sides and boxes; result and
   /// `edits` as in pack_block().
   std::size_t pack_polynomials(std::size_t block, const kernel::KernelTable& kernels, const Vec3* const* edits,
                                kernel::NetBoxes& boxes);
   template <class T>
   kernel::PackJob<T> pack_job(const BlockGroup& group, std::size_t block, const double* const* nets,
                               double* const* copies, Coefficients<T>& to) const;
-  /// Finds only the collapsed edges and boxes of a block's patches.
+  /// Finds only the collapsed sides and boxes of a block's patches.
   void bound_block(std::size_t block, const kernel::KernelTable& kernels, kernel::NetBoxes& boxes);
-  /// Pack one kind of coefficients of a patch of `group` whose collapsed edges are known; `hull` is its box. Return
+  /// Pack one kind of coefficients of a patch of `group` whose collapsed sides are known; `hull` is its box. Return
   /// false if a coefficient does not fit.
   bool pack_bernstein(std::size_t index, const BlockGroup& group, const Box3& hull);
   /// Writes to memory that has room for coefficients for scattered points, or to none if it is null.

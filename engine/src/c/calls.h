@@ -1,5 +1,6 @@
 #pragma once
-// Shared by all functions of the C interface: errors as codes and sentences, structs of other sizes, views, how calls run.
+// Shared by all functions of the C interface: errors as codes and sentences, structs of other sizes, views, how calls
+// run.
 
 #include <algorithm>
 #include <atomic>

@@ -84,7 +84,7 @@ CStatus mesh_views(const tsr_mesh* mesh, tsr_mesh& read, MeshViews& views) {
   if (CStatus status = view_of("position", read.position, views.position); status.code) return status;
   if (CStatus status = view_of("normal", read.normal, views.normal); status.code) return status;
   if (CStatus status = view_of("parameter", read.parameter, views.parameter); status.code) return status;
-  if (CStatus status = view_of("position_f64", read.position_f64, views.position_f64); status.code) return status;
+  if (CStatus status = view_of("position_f64", read.position_f64, views.model_position); status.code) return status;
   constexpr std::size_t most = PTRDIFF_MAX / 16;
   if (read.triangle_count > most || read.quad_count > most) return bad("more faces than memory holds");
   views.indices = list(read.triangles, 3 * read.triangle_count);
@@ -101,12 +101,12 @@ CStatus mesh_copy(const tsr_mesh* mesh, Mesh& copy) {
   copy_records(views.position, copy.positions);
   copy_records(views.normal, copy.normals);
   copy_records(views.parameter, copy.parameters);
-  copy_records(views.position_f64, copy.positions_f64);
+  copy_records(views.model_position, copy.model_positions);
   copy.indices.assign(views.indices.begin(), views.indices.end());
   copy.patches.assign(views.patch.begin(), views.patch.end());
   copy.quads.assign(views.quads.begin(), views.quads.end());
   copy.quad_patches.assign(views.quad_patch.begin(), views.quad_patch.end());
-  if (copy.positions.empty() && !copy.positions_f64.empty())
+  if (copy.positions.empty() && !copy.model_positions.empty())
     return bad("a mesh needs positions in float beside those in double");
   return {};
 }

@@ -31,13 +31,14 @@ CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
                                         .width = from.width,
                                         .height = from.height,
                                         .near_distance = from.near_distance}};
-  if (!(from.weld < 0)) to.weld = from.weld;
-  if (!(from.crease_angle < 0)) to.crease_angle = from.crease_angle;
-  if (!(from.max_gap < 0)) to.max_gap = from.max_gap;
-  to.relative = has(TSR_PLAN_RELATIVE), to.share_vertices = has(TSR_PLAN_SHARE), to.quads = has(TSR_PLAN_QUADS);
-  to.fewest = has(TSR_PLAN_FEWEST), to.smallest = has(TSR_PLAN_SMALLEST), to.close_edges = !has(TSR_PLAN_APART);
+  if (!(from.weld < 0)) to.joining.weld = from.weld;
+  if (!(from.crease_angle < 0)) to.joining.crease_angle = from.crease_angle;
+  if (!(from.max_gap < 0)) to.joining.max_gap = from.max_gap;
+  to.relative = has(TSR_PLAN_RELATIVE), to.joining.share_vertices = has(TSR_PLAN_SHARE), to.quads = has(TSR_PLAN_QUADS);
+  to.fewest = has(TSR_PLAN_FEWEST), to.joining.close_edges = !has(TSR_PLAN_APART);
   if (has(TSR_PLAN_DOUBLE)) to.precision = Precision::double_precision;
   to.spare = from.spare, to.max_triangles = from.max_triangles;
+  if (has(TSR_PLAN_SMALLEST)) to.budget = from.max_triangles;
   return {};
 }
 
@@ -80,7 +81,7 @@ tsr_status tsr_plan_new(tsr_plan** plan, const tsr_set* set, const tsr_plan_opti
     return run_work(run, [&](const Execution& execution) -> CStatus {
       Result<Tessellation> made = Tessellation::make(of->set, wanted, execution);
       if (!made) return made.status();
-      const bool has_normals = !wanted.share_vertices || wanted.crease_angle.has_value();
+      const bool has_normals = !wanted.joining.share_vertices || wanted.joining.crease_angle.has_value();
       return give(plan, std::make_shared<CPlan>(*std::move(made), of.shared(), has_normals));
     });
   });

@@ -1,5 +1,5 @@
 #pragma once
-// Gives the grid kernel what it needs to tell regular normals from limits: the collapsed edges of each lane, and a
+// Gives the grid kernel what it needs to tell regular normals from limits: the collapsed sides of each lane, and a
 // function for exact normals.
 
 #include <array>
@@ -49,10 +49,10 @@ class BlockNormals {
 
   /// Fills the edges' lanes. Whether any patch of the block has a collapsed edge that the grid meets.
   bool find_collapsed() {
-    EdgeMask any;
+    SideMask any;
     for (std::size_t lane = 0; lane < lanes; ++lane) any.bits |= set_.collapsed[lane_patches_[lane]].bits;
     if ((any.bits & plan_.edges.bits) == 0) return false;
-    constexpr std::array edges{Edge::u0, Edge::u1, Edge::v0, Edge::v1};
+    constexpr std::array edges{Side::u0, Side::u1, Side::v0, Side::v1};
     for (std::size_t edge = 0; edge < edges.size(); ++edge)
       for (std::size_t lane = 0; lane < lanes; ++lane)
         collapsed_[edge * lanes + lane] = set_.collapsed[lane_patches_[lane]].has(edges[edge]) ? T(1) : T(0);

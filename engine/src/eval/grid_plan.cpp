@@ -145,10 +145,10 @@ std::vector<std::uint8_t> edges_of(std::span<const double> parameters, std::size
 void find_edges(const PatchSet::Impl& set, GridPlan::Impl& plan) {
   plan.u_edges = edges_of(plan.u, plan.count_u, plan.by_patch, set);
   plan.v_edges = edges_of(plan.v, plan.count_v, plan.by_patch, set);
-  if (std::ranges::count(plan.u_edges, kernel::edge_start) > 0) plan.edges.add(Edge::u0);
-  if (std::ranges::count(plan.u_edges, kernel::edge_end) > 0) plan.edges.add(Edge::u1);
-  if (std::ranges::count(plan.v_edges, kernel::edge_start) > 0) plan.edges.add(Edge::v0);
-  if (std::ranges::count(plan.v_edges, kernel::edge_end) > 0) plan.edges.add(Edge::v1);
+  if (std::ranges::count(plan.u_edges, kernel::edge_start) > 0) plan.edges.add(Side::u0);
+  if (std::ranges::count(plan.u_edges, kernel::edge_end) > 0) plan.edges.add(Side::u1);
+  if (std::ranges::count(plan.v_edges, kernel::edge_start) > 0) plan.edges.add(Side::v0);
+  if (std::ranges::count(plan.v_edges, kernel::edge_end) > 0) plan.edges.add(Side::v1);
 }
 
 Status check_geometry(const LocalGeometryOptions& options) {

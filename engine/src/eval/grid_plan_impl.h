@@ -57,7 +57,7 @@ class GridPlan::Impl {
   bool is_flat = false;  ///< the flat kernel evaluates positions if they are the only output
   FlatTables flat;
   /// Whether any parameter lies on the edges u = 0, u = 1, v = 0, v = 1: only there can a collapsed edge be met.
-  EdgeMask edges;
+  SideMask edges;
   /// Where each parameter lies: edge_start at 0, edge_end at 1 (see kernel_table.h); `[k]`, or `[block][k][lane]`.
   std::vector<std::uint8_t> u_edges, v_edges;
 

@@ -106,8 +106,8 @@ class StageLayout {
   /// The most samples that are staged at once. Longer pieces avoid that a row is cut: both parts compute its curves.
   int longest_piece() const { return 2 * piece(); }
 
-  /// Vectors of 64 bytes are whole lines: with 12 kB of floats or 18 kB of doubles a first-level cache of 32 kB holds the
-  /// net and the weights as well. Shorter vectors get four times as much, in the second level: runs of each array
+  /// Vectors of 64 bytes are whole lines: with 12 kB of floats or 18 kB of doubles a first-level cache of 32 kB holds
+  /// the net and the weights as well. Shorter vectors get four times as much, in the second level: runs of each array
   /// are then longer, and fewer lines are streamed in two parts. A Xeon streams tangents twice as fast with it.
   static constexpr int min_samples = 16, stage_rows = sizeof(T) == 4 ? 768 : 576;
   static constexpr int max_samples = 2 * stage_rows / 3;  ///< the most that longest_piece() is: kinds have this room

@@ -19,12 +19,12 @@ namespace {
 
 /// Where one edge of a patch lies in its net and in its grid.
 struct EdgePlace {
-  Edge edge;
+  Side edge;
   bool along_u;  ///< the curve's parameter is u
   bool at_end;   ///< the other parameter is 1
 };
 constexpr EdgePlace edge_places[] = {
-    {Edge::v0, true, false}, {Edge::v1, true, true}, {Edge::u0, false, false}, {Edge::u1, false, true}};
+    {Side::v0, true, false}, {Side::v1, true, true}, {Side::u0, false, false}, {Side::u1, false, true}};
 
 /// Evaluates the borders of one block and writes them to the records of its patches.
 class BorderWriter {

@@ -38,7 +38,7 @@ double tolerance_of(const TopoDS_Face& face) {
 }
 
 /// One direction of the box.
-struct Side {
+struct FreeRange {
   double from, to;            // of the face
   double first, last;         // of the surface
   double period;              // 0: not periodic
@@ -222,7 +222,7 @@ void add_bounds(const TopoDS_Edge& edge, const TopoDS_Face& face, Bnd_Box2d& box
 }
 
 /// Sets the ends of the rectangle that holds the face's border; without any, of the surface's own.
-void set_bounds_of_edges(const TopoDS_Face& given, const Geom_Surface& surface, Side& u, Side& v) {
+void set_bounds_of_edges(const TopoDS_Face& given, const Geom_Surface& surface, FreeRange& u, FreeRange& v) {
   const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
   Bnd_Box2d box;
   for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
@@ -242,7 +242,7 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
   const handle<Geom_Surface> surface = bare_surface(given);
   const GeomAdaptor_Surface adaptor(surface);
   const double tolerance = tolerance_of(face);
-  Side u{}, v{};
+  FreeRange u{}, v{};
   set_bounds_of_edges(face, *given, u, v);
   surface->Bounds(u.first, u.last, v.first, v.last);
   if (surface->IsUPeriodic()) u.period = surface->UPeriod();
@@ -251,7 +251,7 @@ Result<FaceBox> face_box(const TopoDS_Face& face) {
   v.length_tolerance = adaptor.VResolution(tolerance);
   u.knots = knots_u(adaptor);
   v.knots = knots_v(adaptor);
-  for (Side* const side : {&u, &v}) {
+  for (FreeRange* const side : {&u, &v}) {
     const bool bounded = std::isfinite(side->to - side->from) && !::Precision::IsInfinite(side->from) &&
                          !::Precision::IsInfinite(side->to);
     if (!bounded) return Status(StatusCode::unsupported, "it has no bounds");

@@ -19,8 +19,8 @@ class ShapeEdges {
   /// May throw Standard_Failure.
   explicit ShapeEdges(const TopoDS_Shape& shape);
 
-  /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`. Its edge is no_id if
-  /// the curve does not run along the edge from end to end.
+  /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`. Its edge is
+  /// no_id if the curve does not run along the edge from end to end.
   Coedge coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs) const;
 
   /// Moves vertices and edges into a shape of ours.

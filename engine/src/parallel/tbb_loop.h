@@ -32,8 +32,8 @@ class TESSERA_INTERNAL_EXPORT ApartTasks {
   std::unique_ptr<Group> group_;
 };
 
-/// Calls work() in an arena of `threads` threads, at least 1, the caller's among them. Throws std::bad_alloc. Arenas are
-/// kept for later calls.
+/// Calls work() in an arena of `threads` threads, at least 1, the caller's among them. Throws std::bad_alloc. Arenas
+/// are kept for later calls.
 void on_threads(int threads, FunctionRef<void()> work);
 
 /// Calls a function of the user's. If it starts tasks and waits for them, this thread runs none of ours meanwhile.

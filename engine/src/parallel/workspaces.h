@@ -8,7 +8,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Keeps the workspaces that tasks have used for those that come later, so that there are only as many as tasks at once.
+/// Keeps the workspaces that tasks have used for those that come later, so that there are only as many as tasks at
+/// once.
 template <class T>
 class Workspaces {
  public:

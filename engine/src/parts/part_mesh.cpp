@@ -17,9 +17,9 @@ Status check_local(const TessellationOptions& options) {
                                                " is not for models in parts: it decides for the whole "
                                                "mesh");
   };
-  if (options.share_vertices) return refused("share_vertices");
-  if (options.crease_angle) return refused("a crease angle");
-  if (options.smallest) return refused("the smallest tolerance");
+  if (options.joining.share_vertices) return refused("share_vertices");
+  if (options.joining.crease_angle) return refused("a crease angle");
+  if (options.budget) return refused("a budget of triangles");
   if (options.fewest) return refused("a search for the fewest triangles");
   return {};
 }
@@ -59,7 +59,7 @@ Status keep_patches(Mesh& mesh, std::size_t first_patch, const MeshCapacity& beg
     if (list == 0) keep(mesh.indices, 3 * begin.triangles, 3 * end.triangles, begin.vertices);
     if (list == 1) keep(mesh.quads, 4 * begin.quads, 4 * end.quads, begin.vertices);
     if (list == 2) keep(mesh.positions, 3 * begin.vertices, 3 * end.vertices);
-    if (list == 3) keep(mesh.positions_f64, 3 * begin.vertices, 3 * end.vertices);
+    if (list == 3) keep(mesh.model_positions, 3 * begin.vertices, 3 * end.vertices);
     if (list == 4) keep(mesh.normals, 3 * begin.vertices, 3 * end.vertices);
     if (list == 5) keep(mesh.parameters, 2 * begin.vertices, 2 * end.vertices);
     if (list == 6) keep(mesh.patches, begin.triangles, end.triangles, first_patch);
@@ -84,7 +84,7 @@ double part_reach(const TessellationOptions& options, const Box3& box) {
   constexpr double links = 4, most = 0.05, share = 1e-6;  // the most that a weld may be, and its default, of the size
   const double size = box.diagonal();
   if (options.rates) return 0;
-  if (options.weld) return links * std::min(*options.weld, most * size);
+  if (options.joining.weld) return links * std::min(*options.joining.weld, most * size);
   if (!options.tolerance) return links * share * size;
   return links * std::min(*options.tolerance * (options.relative ? size : 1) / 8, most * size);
 }

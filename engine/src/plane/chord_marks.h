@@ -64,8 +64,8 @@ class ChordMarks {
   /// chord comes within rounding; then each fits the crossings on its line.
   bool is_inside_along_v(std::uint32_t vertex) const { return inside_along_v_[vertex] != 0; }
   bool is_inside_along_u(std::uint32_t vertex) const { return inside_along_u_[vertex] != 0; }
-  /// Whether what follows a vertex along v, or u, lies inside. It differs from the vertex where a chord that is the side
-  /// of a cell crosses the line there: crossings count for the vertices beyond them.
+  /// Whether what follows a vertex along v, or u, lies inside. It differs from the vertex where a chord that is the
+  /// side of a cell crosses the line there: crossings count for the vertices beyond them.
   bool is_inside_after_v(std::uint32_t vertex) const { return is_inside_along_v(vertex) != on_line_u(vertex); }
   bool is_inside_after_u(std::uint32_t vertex) const { return is_inside_along_u(vertex) != on_line_v(vertex); }
   /// The end of a chord near a vertex; no_id if no chord is near.

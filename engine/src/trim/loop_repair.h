@@ -20,8 +20,8 @@ struct RepairedLoops {
   std::vector<LoopRemark> remarks;
 };
 
-/// Cuts, joins and repairs the loops; see TrimRegion. `shared`: extractions to take and to add to; null: none. Errors: those of
-/// loop_pieces().
+/// Cuts, joins and repairs the loops; see TrimRegion. `shared`: extractions to take and to add to; null: none. Errors:
+/// those of loop_pieces().
 Result<RepairedLoops> repair_loops(std::span<const TrimLoop> loops, const CutLines& lines,
                                    CurveExtractions* shared = nullptr);
 

@@ -46,7 +46,8 @@ struct InputHash {
   }
 };
 
-/// Names a job by what decides its result: 128 bits in hexadecimal digits; empty if a file cannot be read, or is a pipe.
+/// Names a job by what decides its result: 128 bits in hexadecimal digits; empty if a file cannot be read, or is a
+/// pipe.
 std::string key_of(const Job& job, const CommonOptions& options) {
   InputHash hash;
   hash.add(TESSERA_VERSION "\n");

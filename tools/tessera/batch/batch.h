@@ -27,12 +27,12 @@ void check_batch(const BatchOptions& options, const Plan& plan);
 std::vector<std::string> result_words(int argc, const char* const* argv);
 
 /// Does `work` for each job of the shard, every N-th from the K-th on, in worker processes: as many as `threads` says,
-/// each with one thread. The output of a job appears as a whole. A worker that takes too long, or ends, is replaced; its
-/// file has failed.
+/// each with one thread. The output of a job appears as a whole. A worker that takes too long, or ends, is replaced;
+/// its file has failed.
 ///
-/// Beside the list lies the record of the shard, LIST.K-of-N.done: a line for each file that is done, with a hash of its
-/// bytes, the options and the version. With --resume these are passed over if their outputs exist. Workers compute the
-/// hashes, within the limits of the file. Call it before any thread is started.
+/// Beside the list lies the record of the shard, LIST.K-of-N.done: a line for each file that is done, with a hash of
+/// its bytes, the options and the version. With --resume these are passed over if their outputs exist. Workers compute
+/// the hashes, within the limits of the file. Call it before any thread is started.
 Status run_batch(const Plan& plan, const CommonOptions& options,
                  const std::function<Status(const Job&, Timings&)>& work);
 

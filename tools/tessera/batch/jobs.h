@@ -44,8 +44,8 @@ bool is_folder(const std::string& output);
 /// The output of --json for a job that failed.
 Json error_json(const Job& job, const Status& status);
 
-/// Does `work` for each job, in worker processes if the files come from a list (see batch.h). Reports jobs that fail and
-/// continues; the status is then not ok, and already printed. With --json a failure is also an object {"files",
+/// Does `work` for each job, in worker processes if the files come from a list (see batch.h). Reports jobs that fail
+/// and continues; the status is then not ok, and already printed. With --json a failure is also an object {"files",
 /// "error"}; with --timings standard error shows the timings.
 Status run_jobs(const Plan& plan, const CommonOptions& options,
                 const std::function<Status(const Job&, Timings&)>& work);

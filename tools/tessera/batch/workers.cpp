@@ -245,7 +245,8 @@ class Pool {
     return Status(StatusCode::internal, "the process that worked on it ended " + how);
   }
 
-  /// Ends all workers before the grace of this process is over (see console.cpp). A second request makes a worker end at once, without its temporaries.
+  /// Ends all workers before the grace of this process is over (see console.cpp). A second request makes a worker end
+  /// at once, without its temporaries.
   void end_all() {
     for (Process& process : processes_)
       if (process.id != 0) ::close(process.jobs);  // an idle worker ends

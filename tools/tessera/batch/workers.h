@@ -25,12 +25,12 @@ struct JobResult {
 };
 
 /// Starts workers and gives them the jobs that next() names, until it names none. `work` runs in a worker, with one
-/// thread; it may write a note. `done` runs here, one call for each job. A worker that takes too long gets a request to terminate, then is killed;
-/// the status of its job is cancelled; that of one that ended by itself is internal. Both are replaced. Workers do not
-/// outlive this process.
+/// thread; it may write a note. `done` runs here, one call for each job. A worker that takes too long gets a request to
+/// terminate, then is killed; the status of its job is cancelled; that of one that ended by itself is internal. Both
+/// are replaced. Workers do not outlive this process.
 ///
-/// Needs a process without threads. Errors: io_error (no process or pipe could be made), cancelled (by an interrupt; all
-/// workers have ended).
+/// Needs a process without threads. Errors: io_error (no process or pipe could be made), cancelled (by an interrupt;
+/// all workers have ended).
 Status run_workers(const WorkerLimits& limits, const std::function<std::optional<std::size_t>()>& next,
                    const std::function<Status(std::size_t job, std::string& note)>& work,
                    const std::function<void(std::size_t job, const JobResult&)>& done);

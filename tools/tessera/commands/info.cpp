@@ -89,10 +89,10 @@ void add_patches(Report& report, const Findings& found) {
   report.add("patches", found.set.patch_count());
   report.add("degrees", degrees);
   report.add("rational_patches", counts.rational);
-  report.add("collapsed_edges", counts.collapsed_edges,
-             "\n  collapsed edges  " + std::to_string(counts.collapsed_edges));
-  report.add("patches_with_collapsed_edges", counts.patches_with_collapsed_edges,
-             " on " + std::to_string(counts.patches_with_collapsed_edges) + " patches");
+  report.add("collapsed_sides", counts.collapsed_sides,
+             "\n  collapsed sides  " + std::to_string(counts.collapsed_sides));
+  report.add("patches_with_collapsed_sides", counts.patches_with_collapsed_sides,
+             " on " + std::to_string(counts.patches_with_collapsed_sides) + " patches");
 }
 
 void add_memory(Report& report, const Findings& found) {

@@ -35,7 +35,8 @@ bool is_already_said(const Status& status);
 Status in_file(const std::filesystem::path& file, const Status& status);
 
 /// Makes Ctrl-C, a request to terminate and a terminal that hangs up set the flag of `interrupted`. If the process has
-/// not ended 0.4 s later, or at the second of them, it ends at once, and leaves no temporary. A file that grows beyond the limit becomes an error of writing.
+/// not ended 0.4 s later, or at the second of them, it ends at once, and leaves no temporary. A file that grows beyond
+/// the limit becomes an error of writing.
 void catch_signals();
 const std::atomic<bool>& interrupted();
 /// Ends the process by the signal that was caught, as its caller expects; returns if there was none.

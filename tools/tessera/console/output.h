@@ -15,8 +15,8 @@ namespace tessera::cli {
 inline constexpr const char* stream_name = "-";
 
 /// Opens the output file; missing folders are made. Standard output if `path` is empty or "-". After an interrupt the
-/// file does not appear. Open it before the work, so that a wrong place is reported at once. A process that does not write
-/// the results (`writes`) gets a file that keeps nothing. Errors: io_error.
+/// file does not appear. Open it before the work, so that a wrong place is reported at once. A process that does not
+/// write the results (`writes`) gets a file that keeps nothing. Errors: io_error.
 Result<OutputFile> open_output(const std::string& path, bool writes = true);
 /// Removes the folders that open_output() has made and that are still empty, as after a failure.
 void remove_empty_folders();

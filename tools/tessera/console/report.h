@@ -21,7 +21,8 @@ class Report {
   void say(const std::string& words) { words_ += words; }
 
   /// Prints the text and ends its line; with --json the object instead, with --timings the seconds in it. Prints on
-  /// standard output, or on standard error if `output`, the command's own, is standard output. Errors: io_error, cancelled.
+  /// standard output, or on standard error if `output`, the command's own, is standard output. Errors: io_error,
+  /// cancelled.
   Status print(const std::string& output, const CommonOptions& options, const Timings& timings);
 
  private:

@@ -59,29 +59,29 @@ struct Candidate {
 };
 
 /// The border's control point k, from 0 to its degree.
-const Vec3& border_point(const BezierPatch& patch, Edge edge, int k) {
-  switch (edge) {
-    case Edge::u0:
+const Vec3& border_point(const BezierPatch& patch, Side side, int k) {
+  switch (side) {
+    case Side::u0:
       return patch.point(0, k);
-    case Edge::u1:
+    case Side::u1:
       return patch.point(patch.degree_u(), k);
-    case Edge::v0:
+    case Side::v0:
       return patch.point(k, 0);
-    case Edge::v1:
+    case Side::v1:
       break;
   }
   return patch.point(k, patch.degree_v());
 }
 
-bool along_v(Edge edge) { return edge == Edge::u0 || edge == Edge::u1; }
+bool along_v(Side side) { return side == Side::u0 || side == Side::u1; }
 
 Candidate candidate(const BezierPatch& patch, const Border& border) {
   Candidate out{border, {}, 0};
-  const double side = border.edge == Edge::u1 || border.edge == Edge::v1 ? 1 : 0;
-  out.middle = along_v(border.edge) ? de_casteljau(patch, side, 0.5) : de_casteljau(patch, 0.5, side);
-  const int degree = along_v(border.edge) ? patch.degree_v() : patch.degree_u();
+  const double end = border.side == Side::u1 || border.side == Side::v1 ? 1 : 0;
+  out.middle = along_v(border.side) ? de_casteljau(patch, end, 0.5) : de_casteljau(patch, 0.5, end);
+  const int degree = along_v(border.side) ? patch.degree_v() : patch.degree_u();
   for (int k = 0; k < degree; ++k)
-    out.length += length(border_point(patch, border.edge, k + 1) - border_point(patch, border.edge, k));
+    out.length += length(border_point(patch, border.side, k + 1) - border_point(patch, border.side, k));
   return out;
 }
 
@@ -110,16 +110,16 @@ std::vector<std::vector<Border>> group_borders(const PatchSet& set, double toler
   std::vector<std::vector<Candidate>> candidates;
   for (std::size_t k = 0; k < set.patch_count(); ++k) {
     const BezierPatch& patch = set.patch(k);
-    const EdgeMask collapsed = patch.collapsed_edges();
-    for (const Edge edge : {Edge::u0, Edge::u1, Edge::v0, Edge::v1}) {
-      if (collapsed.has(edge)) continue;
-      const int degree = along_v(edge) ? patch.degree_v() : patch.degree_u();
-      const std::uint32_t a = places.number_of(border_point(patch, edge, 0));
-      const std::uint32_t b = places.number_of(border_point(patch, edge, degree));
+    const SideMask collapsed = patch.collapsed_sides();
+    for (const Side side : {Side::u0, Side::u1, Side::v0, Side::v1}) {
+      if (collapsed.has(side)) continue;
+      const int degree = along_v(side) ? patch.degree_v() : patch.degree_u();
+      const std::uint32_t a = places.number_of(border_point(patch, side, 0));
+      const std::uint32_t b = places.number_of(border_point(patch, side, degree));
       const std::uint64_t ends = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
       const auto [place, is_new] = by_ends.emplace(ends, candidates.size());
       if (is_new) candidates.emplace_back();
-      candidates[place->second].push_back(candidate(patch, {static_cast<std::uint32_t>(k), edge}));
+      candidates[place->second].push_back(candidate(patch, {static_cast<std::uint32_t>(k), side}));
     }
   }
   std::vector<std::vector<Border>> groups;

@@ -8,10 +8,10 @@
 
 namespace tessera::cli {
 
-/// An edge of a patch of a set.
+/// A side of a patch of a set.
 struct Border {
   std::uint32_t patch = 0;
-  Edge edge = Edge::u0;
+  Side side = Side::u0;
 };
 
 /// Groups all borders that are not collapsed, in the order of the groups' first members. Borders of a group have the

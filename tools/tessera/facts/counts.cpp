@@ -77,9 +77,9 @@ void count_patches(const PatchSet& set, ModelCounts& counts) {
     counts.control_points += patch.points().size();
     counts.patch_bytes +=
         sizeof patch + sizeof(PatchSource) + array_bytes(patch.points()) + array_bytes(patch.weights());
-    const EdgeMask collapsed = patch.collapsed_edges();
-    for (const Edge edge : {Edge::u0, Edge::u1, Edge::v0, Edge::v1}) counts.collapsed_edges += collapsed.has(edge);
-    counts.patches_with_collapsed_edges += collapsed.any();
+    const SideMask collapsed = patch.collapsed_sides();
+    for (const Side side : {Side::v0, Side::u1, Side::v1, Side::u0}) counts.collapsed_sides += collapsed.has(side);
+    counts.patches_with_collapsed_sides += collapsed.any();
   }
   const std::size_t all = set.memory_bytes();
   counts.block_bytes = all - std::min(all, counts.patch_bytes);

@@ -22,7 +22,7 @@ struct ModelCounts {
   std::map<std::string_view, std::size_t> kinds;       ///< kind -> surfaces
   std::map<std::pair<int, int>, std::size_t> degrees;  ///< (along u, along v) -> patches
   std::size_t rational = 0, control_points = 0;        ///< of patches
-  std::size_t collapsed_edges = 0, patches_with_collapsed_edges = 0;
+  std::size_t collapsed_sides = 0, patches_with_collapsed_sides = 0;
   Range u, v;  ///< the surfaces' own parameters
   std::size_t on_unit_square = 0;
   std::size_t model_bytes = 0, patch_bytes = 0, block_bytes = 0;

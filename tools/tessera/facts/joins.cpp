@@ -18,8 +18,8 @@ struct Join {
   bool between_surfaces = false;
 };
 
-JoinSide side(const PatchSet& set, const Border& border) {
-  return {set.patch(border.patch), border.edge, set.source(border.patch).domain};
+JoinedPatch side(const PatchSet& set, const Border& border) {
+  return {set.patch(border.patch), border.side, set.source(border.patch).domain};
 }
 
 /// Measures joins on all threads; an element without a value is a join that cannot be measured (none is known).

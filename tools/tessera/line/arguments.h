@@ -25,8 +25,8 @@ std::string fault_of_name(const std::string& name);
 /// Adds -o and --help for a command that writes text; the default is standard output.
 void add_text_output(Command& command, std::string& output);
 
-/// Throws if one of `outputs` is one of `inputs`, under any name: it would be overwritten. Empty names stand for no file;
-/// a pipe or a terminal may be both. Looks at each file once.
+/// Throws if one of `outputs` is one of `inputs`, under any name: it would be overwritten. Empty names stand for no
+/// file; a pipe or a terminal may be both. Looks at each file once.
 void check_overwriting(const std::string& option, const std::vector<std::string>& outputs,
                        const std::vector<std::string>& inputs);
 

@@ -55,7 +55,7 @@ Status write_ray_hits(const Job& job, const RaycastOptions& options, const Commo
   report.add("uncertified", counts.uncertified,
              exact ? ", " + std::to_string(counts.uncertified) + " of them uncertified" : "");
   report.add("incomplete", counts.incomplete);
-  report.add("seam", counts.seam);
+  report.add("edge", counts.edge);
   add_model_facts(report, scene.loaded, scene.patch_count(), scene.set.fit_error());
   return report.print(job.output, common, timings);
 }

@@ -15,8 +15,8 @@ Vec3 reach_of(const Box3& box, double distance) {
   return 0.5 * (box.upper - box.lower) + Vec3{distance, distance, distance};
 }
 
-/// Whether a model lies farther from zero than four times its size. Nearer models have no tolerance that floats relative
-/// to their middle keep and floats of a file do not.
+/// Whether a model lies farther from zero than four times its size. Nearer models have no tolerance that floats
+/// relative to their middle keep and floats of a file do not.
 bool is_far(const Box3& box) {
   return std::max(max_abs(box.lower), max_abs(box.upper)) > 4 * max_abs(0.5 * (box.upper - box.lower));
 }
@@ -62,11 +62,11 @@ FilePlan plan_for_file(const MeshOptions& options, const Box3& box, const std::s
 }
 
 void add_double_sums(Mesh& mesh) {
-  if (!mesh.positions_f64.empty()) return;
+  if (!mesh.model_positions.empty()) return;
   const std::array<double, 3> origin{mesh.origin.x, mesh.origin.y, mesh.origin.z};
-  mesh.positions_f64.reserve(mesh.positions.size());
+  mesh.model_positions.reserve(mesh.positions.size());
   for (std::size_t k = 0; k < mesh.positions.size(); ++k)
-    mesh.positions_f64.push_back(origin[k % 3] + double{mesh.positions[k]});
+    mesh.model_positions.push_back(origin[k % 3] + double{mesh.positions[k]});
 }
 
 double pixels_of_length(const View& view, const Box3& box, double length_in_space) {

@@ -20,8 +20,8 @@ struct FilePlan {
 /// Returns the options for a model in this box, of which `moved` is what other steps add to the bound.
 ///
 /// Far from zero, where floats of the file would take more than a sixteenth of the tolerance, .obj, .ply and .pvtp get
-/// positions in double, unless the user has chosen. All others get a mesh within the tolerance without the rounding, if the rounding
-/// leaves half of it; otherwise the bound of the file is larger than the tolerance.
+/// positions in double, unless the user has chosen. For other formats the rounding is subtracted from the tolerance if
+/// it takes less than half; otherwise the file exceeds the tolerance.
 FilePlan plan_for_file(const MeshOptions& options, const Box3& box, const std::string& path, double moved = 0);
 
 /// Gives a mesh without positions in double the sums that its file holds.

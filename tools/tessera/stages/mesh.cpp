@@ -181,8 +181,8 @@ class SetMesher {
     const double stretch = shape.stretch > 0 ? shape.stretch : 1;
     if (options.tolerance) options.tolerance = *options.tolerance / stretch;
     options.relative = false;
-    if (options.weld) options.weld = *options.weld / stretch;
-    if (options.max_gap) options.max_gap = *options.max_gap / stretch;
+    if (options.joining.weld) options.joining.weld = *options.joining.weld / stretch;
+    if (options.joining.max_gap) options.joining.max_gap = *options.joining.max_gap / stretch;
     return options;
   }
 
@@ -254,7 +254,7 @@ bool is_even(const Affine& placement) {
 
 }  // namespace
 
-bool allows_shapes(const MeshOptions& options) { return options.pixels == 0 && !options.certified.smallest; }
+bool allows_shapes(const MeshOptions& options) { return options.pixels == 0 && !options.certified.budget; }
 
 bool suits_shapes(const MeshOptions& options, const Loaded& loaded) {
   if (!allows_shapes(options) || !loaded.all_have_shapes) return false;
@@ -265,7 +265,7 @@ bool suits_shapes(const MeshOptions& options, const Loaded& loaded) {
 void add_file(const FilePlan& plan, const MeshOptions& options, const Box3& box, Meshed& made) {
   made.rounding += plan.rounding;
   made.bound += plan.rounding;
-  if (!options.certified.smallest) made.tolerance = plan.tolerance;
+  if (!options.certified.budget) made.tolerance = plan.tolerance;
   made.has_doubles = has_doubles(plan.options) || plan.has_double_sums;
   if (options.pixels > 0) made.pixels += pixels_of_length(options.view, box, plan.rounding);
   made.keeps_tolerances = !(made.bound > plan.tolerance) && !(options.pixels > 0 && made.pixels > options.pixels);

@@ -17,8 +17,8 @@ std::string kept(const MeshOptions& options, const Meshed& made) {
   if (!made.keeps_tolerances) return said + ", more than the tolerance";
   said += made.proven ? ", proven" : ", proven except for fits that are sampled";
   if (options.is_default) said += " (--relative " + readable(default_share) + ", the default)";
-  if (options.certified.smallest)
-    said += ", the smallest tolerance for " + counted(options.certified.max_triangles, "triangle") + " is " +
+  if (options.certified.budget)
+    said += ", the smallest tolerance for " + counted(*options.certified.budget, "triangle") + " is " +
             readable(made.tolerance);
   return said;
 }
@@ -51,7 +51,7 @@ void add_mesh_facts(Report& report, const MeshOptions& options, const Meshed& ma
   report.add("bound", made.bound, ", within " + readable(made.bound, 3) + " of the surfaces");
   report.add("certified", made.proven && made.keeps_tolerances, kept(options, made));
   report.add("tolerance", std::isinf(made.tolerance) ? Json() : Json(made.tolerance));
-  report.add("weld", options.certified.weld ? Json(*options.certified.weld) : Json());
+  report.add("weld", options.certified.joining.weld ? Json(*options.certified.joining.weld) : Json());
   report.add("gap", made.gap);
 }
 

@@ -32,8 +32,8 @@ void add_memory(Command& command, MeshOptions& options) {
 
 void add_weld(Command& command, MeshOptions& options) {
   const auto set_weld = [&options](const std::string& text) {
-    options.certified.weld = parse_numbers("--weld", text, 1, "of at least 0")[0];
-    if (!(*options.certified.weld >= 0))
+    options.certified.joining.weld = parse_numbers("--weld", text, 1, "of at least 0")[0];
+    if (!(*options.certified.joining.weld >= 0))
       throw UsageError("--weld", "expected a length of at least 0, found " + quote(text));
   };
   command.add("--weld", "LENGTH",
@@ -49,7 +49,7 @@ void add_sharing(Command& command, MeshOptions& options) {
     const double angle = parse_numbers("--crease", text, 1, "from 0 to 180")[0];
     if (!(angle >= 0 && angle <= 180))
       throw UsageError("--crease", "expected an angle of 0 to 180 degrees, found " + quote(text));
-    options.certified.crease_angle = angle * degree;
+    options.certified.joining.crease_angle = angle * degree;
   };
   command
       .add("--crease", "DEGREES",
@@ -61,7 +61,7 @@ void add_sharing(Command& command, MeshOptions& options) {
       .add_flag("--share-vertices",
                 "Store vertices once that neighbours share: with --crease those with the same normal, otherwise all, "
                 "without normals",
-                options.certified.share_vertices)
+                options.certified.joining.share_vertices)
       .exclude(grid);
 }
 
@@ -97,10 +97,7 @@ std::vector<const Option*> add_density(Command& command, MeshOptions& options) {
                          });
   Option& triangles =
       command.add_count("--triangles", "COUNT", "The smallest tolerance that needs at most this many triangles", 1,
-                        max_triangles, [&certified](std::size_t count) {
-                          certified.max_triangles = count;
-                          certified.smallest = true;
-                        });
+                        max_triangles, [&certified](std::size_t count) { certified.budget = count; });
   Option& angle = command.add_length(
       "--angle", "DEGREES", "Largest turn of the surfaces' normals within a triangle, up to 90; proven",
       [&certified](double value) {

@@ -32,8 +32,8 @@ struct Packed {
   bool by_shapes = false;
 };
 
-/// Packs as pack(), for meshes. If some surface is trimmed, edges that run side by side are joined where the file states
-/// none, or free ones, so that faces meet along them; where that fails, faces stay unconnected.
+/// Packs as pack(), for meshes. If some surface is trimmed, edges that run side by side are joined where the file
+/// states none, or free ones, so that faces meet along them; where that fails, faces stay unconnected.
 Result<Packed> pack_for_meshes(Loaded& loaded, const PackOptions& options, bool by_shapes, Timings& timings);
 
 /// A shape whose edges joined_edges() has joined within a distance.

@@ -7,7 +7,7 @@
 namespace tessera::cli {
 namespace {
 
-constexpr std::string_view header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz,seam,name\n";
+constexpr std::string_view header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz,edge,name\n";
 
 void write_miss(OutputFile& out, std::size_t ray) {
   out.write_number(ray);
@@ -36,7 +36,7 @@ void write_hit(OutputFile& out, std::size_t ray, const Hit& hit, const std::stri
     out.write(',');
     out.write_number(value, digits);
   }
-  out.write(hit.flags.seam ? ",1," : ",0,");
+  out.write(hit.flags.edge ? ",1," : ",0,");
   write_field(out, name);
   out.write('\n');
 }
@@ -53,7 +53,7 @@ HitCounts use_own_parameters(const Model& model, HitLists& lists) {
     counts.unrefined += hit.flags.unrefined;
     counts.uncertified += hit.flags.uncertified;
     counts.incomplete += hit.flags.incomplete;
-    counts.seam += hit.flags.seam;
+    counts.edge += hit.flags.edge;
   }
   return counts;
 }

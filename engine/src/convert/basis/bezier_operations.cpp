@@ -99,19 +99,19 @@ Result<BezierPolygon> v_line(const BezierPatch& patch, double u) {
   });
 }
 
-Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Edge edge) {
+Result<BezierPolygon> boundary_curve(const BezierPatch& patch, Side side) {
   return guarded([&]() -> Result<BezierPolygon> {
-    switch (edge) {
-      case Edge::u0:
+    switch (side) {
+      case Side::u0:
         return row_of(patch, 0);
-      case Edge::u1:
+      case Side::u1:
         return row_of(patch, patch.degree_u());
-      case Edge::v0:
+      case Side::v0:
         return column_of(patch, 0);
-      case Edge::v1:
+      case Side::v1:
         return column_of(patch, patch.degree_v());
     }
-    return Status(StatusCode::invalid_argument, "the edge of a boundary curve must be u0, u1, v0 or v1");
+    return Status(StatusCode::invalid_argument, "the side of a boundary curve must be u0, u1, v0 or v1");
   });
 }
 

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 #include "convert/basis/bezier_net.h"
-#include "convert/join/edge_rows.h"
+#include "convert/join/side_rows.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
@@ -14,7 +14,7 @@ namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Returns a row of control points along an edge, raised to `degree`; with weights if the patch is rational.
-BezierPolygon row_of(const BezierPatch& patch, const EdgeView& view, int row, int degree) {
+BezierPolygon row_of(const BezierPatch& patch, const SideView& view, int row, int degree) {
   BezierPolygon polygon;
   for (int k = 0; k <= view.along; ++k) {
     polygon.points.push_back(patch.points()[view.index(row, k)]);
@@ -44,8 +44,8 @@ Result<BezierPolygon> continued(const BezierPolygon& before, const BezierPolygon
   return next;
 }
 
-Result<BezierPatch> joined(const JoinSide& p, const JoinSide& q, double k, bool reversed) {
-  const EdgeView from = edge_view(p.patch, p.edge, false), to = edge_view(q.patch, q.edge, reversed);
+Result<BezierPatch> joined(const JoinedPatch& p, const JoinedPatch& q, double k, bool reversed) {
+  const SideView from = side_view(p.patch, p.side, false), to = side_view(q.patch, q.side, reversed);
   const int along = std::max(from.along, to.along);
   const double factor = (from.across * width_across(q)) / (k * to.across * width_across(p));
   const bool rational = p.patch.is_rational() || q.patch.is_rational();
@@ -53,8 +53,8 @@ Result<BezierPatch> joined(const JoinSide& p, const JoinSide& q, double k, bool 
   const Result<BezierPolygon> inside = continued(row_of(p.patch, from, 1, along), border, factor);
   if (!inside) return inside.status();
 
-  const int m = crosses_u(q.edge) ? to.across : along, n = crosses_u(q.edge) ? along : to.across;
-  const EdgeView target(m, n, q.edge, reversed);
+  const int m = crosses_u(q.side) ? to.across : along, n = crosses_u(q.side) ? along : to.across;
+  const SideView target(m, n, q.side, reversed);
   std::vector<Vec3> points(static_cast<std::size_t>((m + 1) * (n + 1)));
   std::vector<double> weights(points.size());
   for (int depth = 0; depth <= to.across; ++depth) {
@@ -70,10 +70,10 @@ Result<BezierPatch> joined(const JoinSide& p, const JoinSide& q, double k, bool 
 
 }  // namespace
 
-Result<BezierPatch> make_join(const JoinSide& p, const JoinSide& q, double k, bool reversed) {
+Result<BezierPatch> make_join(const JoinedPatch& p, const JoinedPatch& q, double k, bool reversed) {
   return guarded([&]() -> Result<BezierPatch> {
-    if (Status status = check_side(p, "p"); !status.ok()) return status;
-    if (Status status = check_side(q, "q"); !status.ok()) return status;
+    if (Status status = check_joined(p, "p"); !status.ok()) return status;
+    if (Status status = check_joined(q, "q"); !status.ok()) return status;
     if (!(k > 0) || !std::isfinite(k))
       return Status(std::isfinite(k) ? StatusCode::invalid_argument : StatusCode::non_finite,
                     "the factor k of a join is " + text(k) + ", it must be finite and greater than 0");

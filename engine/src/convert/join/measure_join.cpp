@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "convert/join/border_maximum.h"
-#include "convert/join/edge_rows.h"
+#include "convert/join/side_rows.h"
 #include "surface/net/homogeneous.h"
 #include "tessera/bezier_operations.h"
 #include "tessera/guard.h"
@@ -32,9 +32,9 @@ double box_size(const Box3& box) {
   return std::max(max_abs(box.upper - box.lower), std::numeric_limits<double>::min());
 }
 
-Border border(const JoinSide& side, bool reversed, const Vec3& origin, double scale) {
-  const BezierPatch& patch = side.patch;
-  const EdgeView view = edge_view(patch, side.edge, reversed);
+Border border(const JoinedPatch& joined, bool reversed, const Vec3& origin, double scale) {
+  const BezierPatch& patch = joined.patch;
+  const SideView view = side_view(patch, joined.side, reversed);
   double heaviest = 1;
   if (patch.is_rational())
     heaviest = power_of_two_near(*std::max_element(patch.weights().begin(), patch.weights().end()));
@@ -56,7 +56,7 @@ Border border(const JoinSide& side, bool reversed, const Vec3& origin, double sc
   const Vectors p0 = points(0, w0), p1 = points(1, w1);
   // With r = A / w: r' = (A' w - A w') / w^2. Across the border A' and w' are differences of the two rows.
   Vectors across = w0 * p1 - w1 * p0;
-  for (Vec3& d : across.values) d = (view.across / width_across(side)) * d;
+  for (Vec3& d : across.values) d = (view.across / width_across(joined)) * d;
   Vectors tangent = patch.is_rational() ? w0 * derivative_u(p0) - derivative_u(w0) * p0 : derivative_u(p0);
   return {p0, w0, std::move(across), std::move(tangent)};
 }
@@ -140,27 +140,27 @@ double nearest_ratio(const CrossDerivatives& d) {
 }
 
 /// Returns true if q's edge runs against p's: this brings its ends and two inner points nearer.
-bool runs_against(const JoinSide& p, const JoinSide& q) {
+bool runs_against(const JoinedPatch& p, const JoinedPatch& q) {
   std::array<double, 2> gap{};
   for (const bool reversed : {false, true})
     for (const double t : {0.0, 0.25, 0.5, 1.0}) {
-      const auto at = [](const JoinSide& side, double s) {
-        const bool end = side.edge == Edge::u1 || side.edge == Edge::v1;
-        return crosses_u(side.edge) ? de_casteljau(side.patch, end, s) : de_casteljau(side.patch, s, end);
+      const auto at = [](const JoinedPatch& joined, double s) {
+        const bool end = joined.side == Side::u1 || joined.side == Side::v1;
+        return crosses_u(joined.side) ? de_casteljau(joined.patch, end, s) : de_casteljau(joined.patch, s, end);
       };
       gap[reversed] = std::max(gap[reversed], max_abs(at(p, t) - at(q, reversed ? 1 - t : t)));
     }
   return gap[1] < gap[0];
 }
 
-Status check(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances) {
-  if (Status status = check_side(p, "p"); !status.ok()) return status;
-  if (Status status = check_side(q, "q"); !status.ok()) return status;
+Status check(const JoinedPatch& p, const JoinedPatch& q, const JoinTolerances& tolerances) {
+  if (Status status = check_joined(p, "p"); !status.ok()) return status;
+  if (Status status = check_joined(q, "q"); !status.ok()) return status;
   if (tolerances.position >= 0 && tolerances.angle >= 0 && tolerances.derivative >= 0) return {};
   return {StatusCode::invalid_argument, "the tolerances of a join must not be negative"};
 }
 
-JoinReport measure(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances) {
+JoinReport measure(const JoinedPatch& p, const JoinedPatch& q, const JoinTolerances& tolerances) {
   Box3 box = p.patch.hull_box();
   box.extend(q.patch.hull_box());
   const double scale = power_of_two_near(box_size(box));
@@ -192,7 +192,7 @@ JoinReport measure(const JoinSide& p, const JoinSide& q, const JoinTolerances& t
 
 }  // namespace
 
-Result<JoinReport> measure_join(const JoinSide& p, const JoinSide& q, const JoinTolerances& tolerances) {
+Result<JoinReport> measure_join(const JoinedPatch& p, const JoinedPatch& q, const JoinTolerances& tolerances) {
   return guarded([&]() -> Result<JoinReport> {
     if (Status status = check(p, q, tolerances); !status.ok()) return status;
     return measure(p, q, tolerances);

@@ -60,14 +60,14 @@ Result<PatchGrid> exact(const CoonsPatch& patch) {
 }
 
 /// A direction of the patch: its own curves and blend.
-struct Side {
+struct BlendedCurves {
   std::array<const BorderCurve*, 2> curves;
   const Blend* blend;
   Interval interval;
 };
 
 /// Bounds |d^k f_a / dt^k| over the part, by the curve's parameter: the hull of its Bernstein coefficients.
-double largest_derivative(const Side& side, std::size_t a, const Interval& part, int k) {
+double largest_derivative(const BlendedCurves& side, std::size_t a, const Interval& part, int k) {
   const std::span<const double> f = a == 0 ? side.blend->first() : side.blend->second();
   std::vector<double> derivative(f.begin(), f.end());
   const double length = side.interval.to - side.interval.from;
@@ -86,8 +86,8 @@ double largest_derivative(const Side& side, std::size_t a, const Interval& part,
 
 /// Bounds |d^k r| along `along`: sum_b |g_b| |X_b^(k)| + sum_a |f_a^(k)| (|Y_a| + sum_b |r_ab| |g_b|). X_b are the
 /// curves of `along`, blended by g_b across; f_a is its blend, which weights the curves Y_a across.
-double bound_along(const Side& along, const Interval& part_along, const Side& across, const Interval& part_across,
-                   const std::array<std::array<double, 2>, 2>& corners, int k) {
+double bound_along(const BlendedCurves& along, const Interval& part_along, const BlendedCurves& across,
+                   const Interval& part_across, const std::array<std::array<double, 2>, 2>& corners, int k) {
   double bound = 0;
   for (std::size_t b = 0; b < 2; ++b)
     bound += largest_derivative(across, b, part_across, 0) * derivative_bound(*along.curves[b], part_along, k);
@@ -107,7 +107,7 @@ DerivativeBounds bounds_of(const CoonsPatch& patch) {
     if (!has_bounds(*border)) return {};
   if (!patch.f().is_polynomial() || !patch.g().is_polynomial()) return {};
   return [&patch, &b](const Domain& part, int k) -> std::array<double, 2> {
-    const Side u{{&b.c1, &b.c2}, &patch.f(), domain(b.c1)}, v{{&b.d1, &b.d2}, &patch.g(), domain(b.d1)};
+    const BlendedCurves u{{&b.c1, &b.c2}, &patch.f(), domain(b.c1)}, v{{&b.d1, &b.d2}, &patch.g(), domain(b.d1)};
     const auto corner = [&](int a, int c) { return length(patch.corner(a, c)); };
     const Interval part_u{part.u0, part.u1}, part_v{part.v0, part.v1};
     return {bound_along(u, part_u, v, part_v, {{{corner(0, 0), corner(0, 1)}, {corner(1, 0), corner(1, 1)}}}, k),

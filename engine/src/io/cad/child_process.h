@@ -24,8 +24,9 @@ struct Patience {
 enum class Reading { whole, ended, late, cancelled };
 
 /// A child process with no descriptors but its streams, nothing to read on standard input, and standard output and
-/// error in one pipe. It blocks no signals, and ignores only what its caller wants to be ignored (nohup: SIGHUP). The destructor kills and collects it. Other children of the process are left
-/// alone, and a process that ignores SIGCHLD loses only the exit status.
+/// error in one pipe. It blocks no signals, and ignores only what its caller wants to be ignored (nohup: SIGHUP). The
+/// destructor kills and collects it. Other children of the process are left alone, and a process that ignores SIGCHLD
+/// loses only the exit status.
 class ChildProcess {
  public:
   /// Starts `words[0]`, a path, with these arguments. Errors: io_error ("cannot be started: Permission denied").

@@ -117,8 +117,8 @@ struct Temporary {
   int error = 0;  ///< errno of a failure
 };
 
-/// Holds signals back on this thread: a handler that calls remove_temporaries() comes before a file is created, or after
-/// its name is known. One that runs on another thread meanwhile leaves the file to the next writer.
+/// Holds signals back on this thread: a handler that calls remove_temporaries() comes before a file is created, or
+/// after its name is known. One that runs on another thread meanwhile leaves the file to the next writer.
 class HeldSignals {
  public:
   HeldSignals() {

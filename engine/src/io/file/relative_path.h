@@ -13,8 +13,8 @@ namespace tessera { inline namespace abi_0_1 {
 /// ".."), parse_error (no name, or one with a byte of 0).
 Result<std::filesystem::path> path_beside(std::string_view file, std::string_view relative);
 
-/// Checks that a file of path_beside() lies below the folder of `file` once symbolic links are followed. A path that does
-/// not exist is below. Errors: unsupported.
+/// Checks that a file of path_beside() lies below the folder of `file` once symbolic links are followed. A path that
+/// does not exist is below. Errors: unsupported.
 Status check_below(std::string_view file, const std::filesystem::path& path);
 
 /// The bytes of a regular file: a pipe or a device that another file names could wait for ever. Errors: io_error,

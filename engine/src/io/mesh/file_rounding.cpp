@@ -47,7 +47,7 @@ PositionRange PositionRange::of(const Mesh& mesh) {
     y = std::max(y, std::abs(mesh.positions[k + 1]));
     z = std::max(z, std::abs(mesh.positions[k + 2]));
   }
-  return {mesh.origin, {x, y, z}, !mesh.positions_f64.empty()};
+  return {mesh.origin, {x, y, z}, !mesh.model_positions.empty()};
 }
 
 bool needs_double_sums(const PositionRange& range) {

@@ -60,11 +60,11 @@ std::uint64_t first_of(const PiecePlace& place, MeshRecord kind) {
 
 /// Stores positions as doubles if `doubles` is set, else as floats.
 void pack_vertices(const Mesh& mesh, bool doubles, std::size_t first, std::size_t last, char* to) {
-  const bool own_doubles = !mesh.positions_f64.empty(), normals = !mesh.normals.empty(),
+  const bool own_doubles = !mesh.model_positions.empty(), normals = !mesh.normals.empty(),
              parameters = !mesh.parameters.empty();
   for (std::size_t k = first; k < last; ++k) {
     if (own_doubles) {
-      to = put(to, mesh.positions_f64.data() + 3 * k, 3);
+      to = put(to, mesh.model_positions.data() + 3 * k, 3);
     } else {
       const float* const p = mesh.positions.data() + 3 * k;
       const Vec3 sum = mesh.origin + Vec3{p[0], p[1], p[2]};
@@ -115,7 +115,7 @@ MeshTotals MeshTotals::of(const Mesh& mesh) {
           .normals = !mesh.normals.empty(),
           .parameters = !mesh.parameters.empty(),
           .patches = mesh.has_patches(),
-          .double_positions = !mesh.positions_f64.empty()};
+          .double_positions = !mesh.model_positions.empty()};
 }
 
 PlyLayout::PlyLayout(const MeshTotals& totals) : totals_(totals), header_(header_text(totals)) {}

@@ -74,7 +74,7 @@ Result<std::size_t> first_misplaced(const Mesh& mesh) {
 Status check_lengths(const Mesh& mesh) {
   const std::size_t vertices = mesh.vertex_count(), triangles = mesh.triangle_count();
   const bool lengths_fit = mesh.positions.size() == 3 * vertices && mesh.indices.size() == 3 * triangles &&
-                           (mesh.positions_f64.empty() || mesh.positions_f64.size() == 3 * vertices) &&
+                           (mesh.model_positions.empty() || mesh.model_positions.size() == 3 * vertices) &&
                            (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
                            (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices) &&
                            (mesh.patches.empty() || mesh.patches.size() == triangles) &&
@@ -104,11 +104,11 @@ Status check_numbers(const Mesh& mesh) {
                             parameter = first_not_finite(mesh.parameters);
   for (const Result<std::size_t>* found : {&vertex, &normal, &parameter})
     if (!*found) return found->status();
-  const auto not_finite =
-      std::find_if_not(mesh.positions_f64.begin(), mesh.positions_f64.end(), [](double x) { return std::isfinite(x); });
-  if (not_finite != mesh.positions_f64.end())
+  const auto not_finite = std::find_if_not(mesh.model_positions.begin(), mesh.model_positions.end(),
+                                           [](double x) { return std::isfinite(x); });
+  if (not_finite != mesh.model_positions.end())
     return {StatusCode::non_finite, "a position in double of the mesh is not finite",
-            (not_finite - mesh.positions_f64.begin()) / 3};
+            (not_finite - mesh.model_positions.begin()) / 3};
   const std::size_t bad = std::min(*vertex, mesh.normals.empty() ? *vertex : *normal / 3);
   if (bad < mesh.vertex_count())
     return {StatusCode::non_finite, "a vertex of the mesh is not finite in float", static_cast<std::ptrdiff_t>(bad)};

@@ -1,5 +1,5 @@
-// VTK's XML files of polygons (The VTK User's Guide, 11th edition, chapter 19.3): a piece of a mesh as PolyData, with its
-// numbers appended as raw bytes, each array after its length; and the index of all pieces, which holds no numbers.
+// VTK's XML files of polygons (The VTK User's Guide, 11th edition, chapter 19.3): a piece of a mesh as PolyData, with
+// its numbers appended as raw bytes, each array after its length; and the index of all pieces, which holds no numbers.
 
 #include <bit>
 #include <cstdint>
@@ -108,7 +108,7 @@ void add_cell_data(VtpPiece& piece, const Mesh& mesh, const MeshTotals& totals, 
 void add_points(VtpPiece& piece, const Mesh& mesh, const MeshTotals& totals) {
   piece.open("Points");
   if (totals.double_positions)
-    piece.add({"Points", "Float64", 3, mesh.vertex_count(), 24, copied(mesh.positions_f64.data(), 24)});
+    piece.add({"Points", "Float64", 3, mesh.vertex_count(), 24, copied(mesh.model_positions.data(), 24)});
   else
     piece.add({"Points", "Float32", 3, mesh.vertex_count(), 12, [&mesh](std::size_t first, std::size_t last, char* to) {
                  for (const float* p = mesh.positions.data() + 3 * first; first < last; ++first, p += 3, to += 12)

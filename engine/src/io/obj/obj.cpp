@@ -50,8 +50,8 @@ void write_face(OutputFile& out, std::span<const std::uint32_t> corners, bool pa
 
 /// Writes a vertex in the model's coordinates.
 void write_position(OutputFile& out, const Mesh& mesh, std::size_t k, bool has_double_sums) {
-  if (!mesh.positions_f64.empty()) {
-    write_record<double>(out, "v", std::span(mesh.positions_f64).subspan(3 * k, 3));
+  if (!mesh.model_positions.empty()) {
+    write_record<double>(out, "v", std::span(mesh.model_positions).subspan(3 * k, 3));
     return;
   }
   const float* const p = mesh.positions.data() + 3 * k;

@@ -199,8 +199,8 @@ class G2ObjectReader {
     return {};
   }
 
-  /// Reads an elementary surface. Bounds along straight lines are often as good as infinite, if there are any: there the
-  /// surface ends where its loops do.
+  /// Reads an elementary surface. Bounds along straight lines are often as good as infinite, if there are any: there
+  /// the surface ends where its loops do.
   Status read_trimmed_elementary(std::int64_t kind, G2Numbers& numbers) {
     G2Elementary record = read_g2_elementary(kind, numbers, true);
     if (!numbers.ok()) return numbers.status();

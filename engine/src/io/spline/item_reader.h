@@ -45,8 +45,8 @@ class ItemReader {
   virtual Status begin(TextCursor&) { return {}; }
   /// Whether item number `item`, counted from 0, is to come.
   virtual bool more(TextCursor& cursor, std::size_t item) const = 0;
-  /// Takes an item. `beyond`: the bytes of the file after the text. If the text ends before the item does, the cursor is
-  /// at its end afterwards, and the result means nothing.
+  /// Takes an item. `beyond`: the bytes of the file after the text. If the text ends before the item does, the cursor
+  /// is at its end afterwards, and the result means nothing.
   virtual Result<ReadItem> read(TextCursor& cursor, std::size_t item, std::uint64_t beyond) = 0;
   /// Takes an item and makes no surface of it. Numbers may be left unchecked.
   virtual Result<ReadItem> skip(TextCursor& cursor, std::size_t item, std::uint64_t beyond) {
@@ -77,8 +77,8 @@ struct TextWindow {
   std::uint64_t beyond;  ///< the bytes of the file after the text
 };
 
-/// A run of the surfaces of a file, with the items that stand before each. Without an end it has all items to the end of
-/// the file.
+/// A run of the surfaces of a file, with the items that stand before each. Without an end it has all items to the end
+/// of the file.
 struct ItemRun {
   static constexpr std::size_t to_the_end = std::numeric_limits<std::size_t>::max();
   std::size_t first = 0, end = to_the_end;

@@ -1,8 +1,8 @@
 #pragma once
-// Fundamental forms, curvatures and principal directions, lanes = patches, as surface/net/local_geometry.cpp defines them.
-// With e1 = r_u / |r_u|, e2 = N x e1 the second form is the symmetric matrix (s11, s12; s12, s22), so k1 and k2 do not
-// suffer from H^2 - K (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). With E = r_u.r_u,
-// F = r_u.r_v, L = r_uu.N, ...:
+// Fundamental forms, curvatures and principal directions, lanes = patches, as surface/net/local_geometry.cpp defines
+// them. With e1 = r_u / |r_u|, e2 = N x e1 the second form is the symmetric matrix (s11, s12; s12, s22), so k1 and k2
+// do not suffer from H^2 - K (do Carmo, Differential Geometry of Curves and Surfaces, sec. 3.3). With E = r_u.r_u, F =
+// r_u.r_v, L = r_uu.N, ...:
 //   s11 = L / E,  s12 = (M - (F/E) L) / |r_u x r_v|,  s22 = (N - 2 (F/E) M + (F/E)^2 L) E / |r_u x r_v|^2.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/grid/grid_kernels.h, kernel/isa/lanes.h.

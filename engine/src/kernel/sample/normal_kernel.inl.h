@@ -190,7 +190,7 @@ inline void derive_again(const GridJob<typename L::Scalar>& job, const Place& pl
 
 /// Finds the limit normals of lanes on a collapsed edge by one more derivative. Where r_u vanishes along v = 0, r_u(u,
 /// k) = k r_uv + ..., so r_uv x r_v decides, and -r_uv x r_v at v = 1; likewise r_u x r_uv along u = 0. A corner of two
-/// collapsed edges has no limit. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
+/// collapsed sides has no limit. The error of r_uv is taken as 4 max(m, n) times that of the tangents.
 template <class L>
 [[gnu::noinline, gnu::cold]] void limit_normals(const GridJob<typename L::Scalar>& job, const Tangents<L>& tangents,
                                                 const Place& place, typename L::Batch& doubtful, Normal<L>& normal) {

@@ -52,7 +52,8 @@ class EmbreeMonitor {
 /// best. The monitor must outlive the device. Errors: internal, out_of_memory.
 Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa = {});
 
-/// Commits a scene in the caller's arena, for any rounding mode of the caller's thread. Errors: cancelled, Embree's own.
+/// Commits a scene in the caller's arena, for any rounding mode of the caller's thread. Errors: cancelled, Embree's
+/// own.
 Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
 
 }}  // namespace tessera::abi_0_1

@@ -70,9 +70,9 @@ Refiner::Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box
 
 Refiner::Leash Refiner::leash(std::uint32_t patch, double u, double v) const {
   // Near a pole the parameter that runs around it says little, so it is free there.
-  const EdgeMask collapsed = set_.collapsed_edges(patch);
-  const double du = collapsed.has(Edge::v0) || collapsed.has(Edge::v1) ? 1 : cells_;
-  const double dv = collapsed.has(Edge::u0) || collapsed.has(Edge::u1) ? 1 : cells_;
+  const SideMask collapsed = set_.collapsed_sides(patch);
+  const double du = collapsed.has(Side::v0) || collapsed.has(Side::v1) ? 1 : cells_;
+  const double dv = collapsed.has(Side::u0) || collapsed.has(Side::u1) ? 1 : cells_;
   return {{std::max(u - du, -overshoot), std::min(u + du, 1 + overshoot), std::max(v - dv, -overshoot),
            std::min(v + dv, 1 + overshoot)}};
 }
@@ -126,9 +126,9 @@ Refiner::Outcome Refiner::newton(const RaySegment& segment, SurfaceRoot& root) c
 
 void Refiner::push_neighbours(const SurfaceRoot& root, Frontier& frontier) const {
   const std::array<double, 4> excess{-root.u, root.u - 1, -root.v, root.v - 1};
-  const EdgeMask collapsed = set_.collapsed_edges(root.patch);
-  const bool over_pole = (collapsed.has(Edge::u0) && excess[0] > 0) || (collapsed.has(Edge::u1) && excess[1] > 0) ||
-                         (collapsed.has(Edge::v0) && excess[2] > 0) || (collapsed.has(Edge::v1) && excess[3] > 0);
+  const SideMask collapsed = set_.collapsed_sides(root.patch);
+  const bool over_pole = (collapsed.has(Side::u0) && excess[0] > 0) || (collapsed.has(Side::u1) && excess[1] > 0) ||
+                         (collapsed.has(Side::v0) && excess[2] > 0) || (collapsed.has(Side::v1) && excess[3] > 0);
   std::array<int, 4> order{0, 1, 2, 3};  // the edge with the largest excess comes first
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     const double x = excess[static_cast<std::size_t>(a)], y = excess[static_cast<std::size_t>(b)];

@@ -1,9 +1,9 @@
 #pragma once
 // Newton's method in double, from a facet that a ray hit to the true surface.
 
+#include "ray/border/adjacency.h"
 #include "ray/line/ray_segment.h"
 #include "ray/line/set_view.h"
-#include "ray/seam/adjacency.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -23,7 +23,7 @@ class Refiner {
   /// `reach`: how far a root may lie from its facet, in parameters. The adjacency must outlive this. `box`: the set's.
   Refiner(const SetView& set, const Adjacency& adjacency, const Box3& box, double reach);
 
-  /// Finds the root near (u,v) on `patch` or, if it lies across a seam, on the patches behind. Returns false if there
+  /// Finds the root near (u,v) on `patch` or, if it lies across a border, on the patches behind. Returns false if there
   /// is none within a few grid cells: the ray grazes the surface, or the surface is too crooked for its grid.
   bool refine(const RaySegment& segment, std::uint32_t patch, double u, double v, SurfaceRoot& root) const;
 

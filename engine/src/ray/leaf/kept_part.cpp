@@ -28,8 +28,8 @@ class HullOfPieces {
 
   const Domain& hull() const { return hull_; }
 
-  /// Adds a piece, and returns whether it may pass through the rectangle. It is monotone, so that each part of it lies in
-  /// the box of its ends.
+  /// Adds a piece, and returns whether it may pass through the rectangle. It is monotone, so that each part of it lies
+  /// in the box of its ends.
   bool add(const TrimPiece& piece) {
     const ParameterPoint size = distance(piece.start(), piece.end());
     const ParameterPoint off = off_ + 2 * piece.error + 1e-13 * (size + distance(piece.start(), middle_));

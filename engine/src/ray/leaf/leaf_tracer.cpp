@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "ray/border/spawn_root.h"
 #include "ray/leaf/polished_root.h"
 #include "ray/line/lane_vectors.h"
 #include "ray/net/seen_point.h"
-#include "ray/seam/spawn_root.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

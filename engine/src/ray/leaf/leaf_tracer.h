@@ -6,12 +6,12 @@
 #include <cstddef>
 
 #include "kernel/ray/ray_kernels.h"
+#include "ray/border/lazy_adjacency.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
 #include "ray/leaf/leaf_trims.h"
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
-#include "ray/seam/lazy_adjacency.h"
 #include "ray/tube/edge_tubes.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -53,8 +53,8 @@ struct TracedLeaves {
   double tolerance_of(const Leaf& leaf) const;
 };
 
-/// Traces leaves and tubes; refers to the data that it is made of. Const calls from any number of threads, each with a search
-/// space of its own.
+/// Traces leaves and tubes; refers to the data that it is made of. Const calls from any number of threads, each with a
+/// search space of its own.
 struct LeafTracer final : OriginTest, TracedLeaves {
   const kernel::RayKernels* kernels = nullptr;
 

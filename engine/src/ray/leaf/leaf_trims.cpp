@@ -26,8 +26,8 @@ Domain rectangle_of(const Domain& patch, const Leaf& leaf) {
   return {patch.u_at(leaf.u0), patch.u_at(leaf.u0 + leaf.du), patch.v_at(leaf.v0), patch.v_at(leaf.v0 + leaf.dv)};
 }
 
-/// Returns a part of a leaf's side that holds a range of the patch's parameter, with a margin of a quarter of a share. Its
-/// ends are even shares of the side, so that no sum rounds.
+/// Returns a part of a leaf's side that holds a range of the patch's parameter, with a margin of a quarter of a share.
+/// Its ends are even shares of the side, so that no sum rounds.
 LeafSide shrunk(const LeafSide& side, double from, double to) {
   const auto share = [&](double x) { return shares * ((x - side.start) / side.width); };
   const double lower = std::clamp(std::floor(share(from) - 0.25), 0.0, shares - 1);
@@ -118,8 +118,8 @@ bool LeafTrims::is_inside(const Leaf& leaf, double u, double v, double along_u, 
          is_inside(leaf, u + along_u, v + along_v, along_u, along_v, halvings - 1);
 }
 
-/// A root beyond a side of its patch, within rounding, is found on the side. So squares there are left open where a loop
-/// may be near.
+/// A root beyond a side of its patch, within rounding, is found on the side. So squares there are left open where a
+/// loop may be near.
 void LeafTrims::open_sides(const Leaf& leaf, KeptSquares& squares) const {
   constexpr unsigned count = KeptSquares::per_side;
   constexpr int halvings = 4;

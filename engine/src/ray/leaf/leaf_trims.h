@@ -26,8 +26,8 @@ class LeafTrims final : public RootSides {
   PatchUse use(std::size_t leaf) const { return squares_[leaf].use(); }
   /// The kept part of a leaf, by squares.
   const KeptSquares& squares(std::size_t leaf) const { return squares_[leaf]; }
-  /// The side of all points of a cut leaf's patch within (u +- reach_u, v +- reach_v). `border`: a loop passes near, and
-  /// only side_of() may tell.
+  /// The side of all points of a cut leaf's patch within (u +- reach_u, v +- reach_v). `border`: a loop passes near,
+  /// and only side_of() may tell.
   TrimSide side_near(std::uint32_t patch, double u, double v, double reach_u, double reach_v) const;
   /// The side of a root of a cut leaf. `border`: the loops pass between the places where the root may be.
   TrimSide side_of(const LeafRoot& root) const override;

@@ -36,11 +36,11 @@ template <class Trace>
 RootsAside roots_aside(RayQuery& query, const Box3& box, const Trace& trace) {
   RootsAside best{query.line, query.roots};
   for (std::size_t way = 0; way < ways_aside && !query.overflow; ++way) {
-    const RayLine line = line_aside(query.line, way, query.seam_gap, box);
+    const RayLine line = line_aside(query.line, way, query.edge_gap, box);
     RayQuery other(query.ray, line, RootsWanted::all);
     if (!line.empty) trace(other);
     query.steps += other.steps, query.overflow |= other.overflow;
-    if (other.seam_gap > 0 || (best.is_clear && other.roots.size() <= best.roots.size())) continue;
+    if (other.edge_gap > 0 || (best.is_clear && other.roots.size() <= best.roots.size())) continue;
     best = {line, std::move(other.roots), true, other.incomplete};
     if (best.roots.size() >= query.roots.size()) break;
   }

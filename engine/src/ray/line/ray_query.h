@@ -31,8 +31,8 @@ struct LeafRoot {
   bool certified = false;         ///< the only root of its surroundings, up to rounding
   bool upwards = false;           ///< if the gains are known: the side of du x dv to which the line goes
   bool has_point = false;
-  bool is_seam = false;   ///< a point of an edge near the line: see edge_tubes.h
-  Vec3 position, du, dv;  ///< if has_point: of the patch, in the scene's coordinates
+  bool is_on_edge = false;  ///< a point of an edge near the line: see edge_tubes.h
+  Vec3 position, du, dv;    ///< if has_point: of the patch, in the scene's coordinates
 };
 
 /// Bounds, in u and v, the distance from `a` of the root that `a` and another point may both stand for. Both points lie
@@ -131,7 +131,7 @@ struct RayQuery {
   const RootFilter* filter = nullptr;                       ///< if not all roots count; never if all are wanted
   std::size_t index = 0;                                    ///< index of the ray in the batch, for the filter
   bool stopped = false;                                     ///< by the filter
-  double seam_gap = 0;  ///< if all are wanted: the largest gap of the edges that the line passes
+  double edge_gap = 0;  ///< if all are wanted: the largest gap of the edges that the line passes
 
   /// Returns t of a root that was taken. Call it where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
@@ -167,14 +167,14 @@ struct RayQuery {
   }
 
   /// Takes the point of an edge that the line passes within its gap. Where all roots are wanted it is none.
-  void take_seam(const LeafRoot& root, double gap) {
-    seam_gap = std::max(seam_gap, gap);
+  void take_edge(const LeafRoot& root, double gap) {
+    edge_gap = std::max(edge_gap, gap);
     if (wanted != RootsWanted::all) add(root, line.t_at(root.s));
   }
 
  private:
   [[gnu::noinline]] static bool wins_at_equal_t(const LeafRoot& a, const LeafRoot& b) {
-    if (a.is_seam != b.is_seam) return a.is_seam;
+    if (a.is_on_edge != b.is_on_edge) return a.is_on_edge;
     const auto order = [](const LeafRoot& r) {
       return std::tie(r.patch, r.u, r.v, r.s, r.residual, r.position.x, r.position.y, r.position.z);
     };

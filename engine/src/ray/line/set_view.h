@@ -17,7 +17,7 @@ class SetView {
   std::size_t patch_count() const { return set_->patches.size(); }
   const BezierPatch& patch(std::size_t index) const { return set_->patches[index]; }
   const PatchSource& source(std::size_t index) const { return set_->sources[index]; }
-  EdgeMask collapsed_edges(std::size_t index) const { return set_->collapsed[index]; }
+  SideMask collapsed_sides(std::size_t index) const { return set_->collapsed[index]; }
   Vec3 origin() const { return set_->origin; }
   Box3 box() const { return set_->box(); }  ///< visits every control point
   std::uint64_t revision() const { return set_->revision; }

@@ -12,6 +12,10 @@
 
 #include "base/text.h"
 #include "kernel/table/kernel_table.h"
+#include "ray/border/distinct_roots.h"
+#include "ray/border/fold_roots.h"
+#include "ray/border/lazy_adjacency.h"
+#include "ray/border/nearest_root.h"
 #include "ray/embree/embree_leaves.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/leaf/leaf_nets.h"
@@ -25,10 +29,6 @@
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
-#include "ray/seam/distinct_roots.h"
-#include "ray/seam/fold_roots.h"
-#include "ray/seam/lazy_adjacency.h"
-#include "ray/seam/nearest_root.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -146,7 +146,7 @@ Status ExactScene::build(const Execution& execution) {
   if (Status status = nets_.plan(set(), frame_, flatness(), execution); !status.ok()) return status;
   if (Status status = trims_.build(set(), nets_.planned(), execution); !status.ok()) return status;
   tubes_.clear();
-  if (options_.seams)
+  if (options_.edges)
     if (Status status = tubes_.build(set(), frame_, adjacency_, tube_radius(), execution); !status.ok()) return status;
   const std::size_t leaf_count = nets_.leaves().size();
   if (leaf_count + tubes_.count() > max_leaves)
@@ -181,7 +181,7 @@ Status ExactScene::update(std::uint64_t since, const Execution& execution) {
 
 void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const {
   hit.flags = {};
-  hit.flags.seam = root.is_seam;
+  hit.flags.edge = root.is_on_edge;
   if (!root.certified) {
     hit.flags.uncertified = true;
     hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
@@ -358,8 +358,8 @@ void ExactScene::append_hits(const RayQuery& query, const RootsAside& found, std
     if (root.patch >= own_patches()) continue;
     Hit& hit = hits.emplace_back(hit_at(found.line, root));
     hit.t = std::clamp(found.line.t_at(root.s), query.ray.tnear, query.ray.tfar);
-    hit.flags.seam = query.seam_gap > 0;
-    if (hit.flags.seam) hit.residual = distance(query.line, frame_.to_scene(hit.position)) / frame_.scale;
+    hit.flags.edge = query.edge_gap > 0;
+    if (hit.flags.edge) hit.residual = distance(query.line, frame_.to_scene(hit.position)) / frame_.scale;
     hit.flags.incomplete = query.incomplete;
     hit.steps = saturated_u16(query.steps);
   }
@@ -367,7 +367,7 @@ void ExactScene::append_hits(const RayQuery& query, const RootsAside& found, std
 
 void ExactScene::hits_of(RayQuery& query, std::vector<Hit>& hits) const {
   complete_roots(query);
-  if (query.seam_gap == 0) return append_hits(query, {query.line, std::move(query.roots)}, hits);
+  if (query.edge_gap == 0) return append_hits(query, {query.line, std::move(query.roots)}, hits);
   const auto find_roots = [&](RayQuery& other) { trace_alone(other), complete_roots(other); };
   const RootsAside aside = roots_aside(query, scene_box_, find_roots);
   if (query.overflow) return;

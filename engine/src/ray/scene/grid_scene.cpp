@@ -7,6 +7,7 @@
 #include <string>
 
 #include "kernel/table/kernel_table.h"
+#include "ray/border/adjacency.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/facet/facet_source.h"
 #include "ray/facet/packet_refine.h"
@@ -16,7 +17,6 @@
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
-#include "ray/seam/adjacency.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

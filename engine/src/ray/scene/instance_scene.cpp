@@ -26,7 +26,7 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-struct Instance {
+struct PlacedScene {
   const RayScene::Impl* scene;
   const ExactSource* source;
   Affine to_world;
@@ -60,14 +60,16 @@ using Lane = InstanceLane;
 
 class InstanceScene final : public RayScene::Impl {
  public:
-  InstanceScene(std::vector<Instance> instances, EmbreeBoxes boxes)
+  InstanceScene(std::vector<PlacedScene> instances, EmbreeBoxes boxes)
       : instances_(std::move(instances)), boxes_(std::move(boxes)) {
-    for (const Instance& instance : instances_) {
+    for (const PlacedScene& instance : instances_) {
       if (std::find(scenes_.begin(), scenes_.end(), instance.scene) == scenes_.end()) scenes_.push_back(instance.scene);
     }
   }
 
-  std::size_t memory_bytes() const override { return boxes_.memory_bytes() + instances_.capacity() * sizeof(Instance); }
+  std::size_t memory_bytes() const override {
+    return boxes_.memory_bytes() + instances_.capacity() * sizeof(PlacedScene);
+  }
   double spawn_offset() const override { return spawn_offset_; }
   Result<LocalGeometry> local_geometry(const Hit& hit) const override;
 
@@ -105,7 +107,7 @@ class InstanceScene final : public RayScene::Impl {
                      const Take& take) const;
   void place(const RayLine& line, unsigned instance, HitParts parts, Hit& hit) const;
 
-  std::vector<Instance> instances_;
+  std::vector<PlacedScene> instances_;
   std::vector<const RayScene::Impl*> scenes_;  // each once
   EmbreeBoxes boxes_;
   double spawn_offset_ = 0;  // the largest of any instance
@@ -117,7 +119,7 @@ Status InstanceScene::build(const Execution& execution) {
   std::vector<Box3> boxes(instances_.size());
   box_ = {}, spawn_offset_ = 0;
   for (std::size_t k = 0; k < instances_.size(); ++k) {
-    Instance& instance = instances_[k];
+    PlacedScene& instance = instances_[k];
     if (!instance.scene->fresh())
       return Status(StatusCode::stale, name_of(k) + "the patch set of its scene was edited: refit that scene first",
                     static_cast<std::ptrdiff_t>(k));
@@ -152,7 +154,7 @@ Status InstanceScene::build(const Execution& execution) {
 template <std::size_t Most, class Take>
 void InstanceScene::meet_instance(unsigned instance, std::span<Lane* const> lanes, RootsWanted wanted,
                                   BatchFilter* filter, const Take& take) const {
-  const Instance& of = instances_[instance];
+  const PlacedScene& of = instances_[instance];
   const SceneFilter own_filter(filter, *of.source->tracer().set, instance);
   TurnRoom<RayLine> room;
   const std::span<RayLine> lines = room.span();
@@ -259,7 +261,7 @@ Result<LocalGeometry> InstanceScene::local_geometry(const Hit& hit) const {
   if (hit.instance >= instances_.size())
     return Status(StatusCode::invalid_argument, "there is no instance " + std::to_string(hit.instance) +
                                                     " in a scene of " + std::to_string(instances_.size()));
-  const Instance& instance = instances_[hit.instance];
+  const PlacedScene& instance = instances_[hit.instance];
   Result<LocalGeometry> own = instance.scene->local_geometry(hit);
   if (!own) return own;
   SurfaceJet jet = evaluate_jet(instance.source->tracer().set->patch(hit.patch), hit.patch_u, hit.patch_v);
@@ -348,7 +350,7 @@ Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayI
   if (instances.size() >= Hit::no_instance)
     return Status(StatusCode::unsupported, "a ray scene holds at most " + std::to_string(Hit::no_instance - 1) +
                                                " instances, not " + std::to_string(instances.size()));
-  std::vector<Instance> out;
+  std::vector<PlacedScene> out;
   for (std::size_t k = 0; k < instances.size(); ++k) {
     const RayScene* const scene = instances[k].scene;
     if (scene == nullptr)

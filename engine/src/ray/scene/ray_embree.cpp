@@ -52,7 +52,7 @@ class RootsBehind final : public RootFilter {
  public:
   void pass(const RayQuery& query) { last_ = query.best, t_ = query.best_t; }
   HitVerdict decide(const RayQuery& query, const LeafRoot& root) const noexcept override {
-    const bool is_same = root.patch == last_.patch && root.is_seam == last_.is_seam && same_place(root, last_);
+    const bool is_same = root.patch == last_.patch && root.is_on_edge == last_.is_on_edge && same_place(root, last_);
     const bool is_behind = !is_same && RayQuery::precedes(last_, t_, root, query.line.t_at(root.s));
     return is_behind ? HitVerdict::accept : HitVerdict::reject;
   }

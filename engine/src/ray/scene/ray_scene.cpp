@@ -12,6 +12,7 @@
 #include "parallel/parallel_for.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "tessera/guard.h"
+#include "tessera/model.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -155,6 +156,21 @@ Result<RayScene> RayScene::make(const PatchSet& set, const RaySceneOptions& opti
     if (Status status = (*impl)->rebuild(execution); !status.ok()) return status;
     return RayScene(*std::move(impl));
   });
+}
+
+Result<RayScene> RayScene::make(PatchSet&& set, const RaySceneOptions& options, const Execution& execution) {
+  return guarded([&]() -> Result<RayScene> {
+    Result<RayScene> made = make(std::as_const(set), options, execution);
+    if (made) made->impl_->keep(std::move(set));
+    return made;
+  });
+}
+
+Result<RayScene> RayScene::make(const Model& model, const RaySceneOptions& options, const Execution& execution) {
+  Result<PatchSet> set = make_patch_set(model);
+  if (!set) return set.status();
+  if (const std::span<const Status> faults = set->trim_faults(); !faults.empty()) return faults.front();
+  return make(*std::move(set), options, execution);
 }
 
 Result<RayScene> RayScene::make(const PatchSet& set, const Mesh& mesh, const RaySceneOptions& options,

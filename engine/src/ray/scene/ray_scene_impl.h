@@ -2,6 +2,7 @@
 // The interface and common parts of all kinds of ray scenes.
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "ray/line/set_view.h"
@@ -31,6 +32,9 @@ class RayScene::Impl {
   /// Finds shared borders, unless that is done. Call it before all_of(), and before tracing rays that leave a surface,
   /// from one thread or several at once. Throws bad_alloc.
   virtual void prepare_borders() const {}
+
+  /// Keeps the set that the scene is made of.
+  void keep(PatchSet&& set) { set_.emplace(std::move(set)); }
 
   virtual bool can_filter() const { return true; }
   /// Returns null except in exact mode.
@@ -71,6 +75,7 @@ class RayScene::Impl {
   Status done(Status status);
   Status check(const RayBatch& batch) const;
 
+  std::optional<PatchSet> set_;  // empty if the caller keeps it
   std::uint64_t revision_ = 0;
   bool ready_ = false;  // false after a build that failed
 };

@@ -12,8 +12,8 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// The index into all_edges of a patch's side.
-int index_of(Side side) { return static_cast<int>(std::ranges::find(all_edges, edge_of(side)) - all_edges.begin()); }
+/// The index into link_sides of a patch's side.
+int index_of(Side side) { return static_cast<int>(std::ranges::find(link_sides, side) - link_sides.begin()); }
 
 /// The part of the edge's range that a curve covers.
 double extent(const EdgeCurve& curve) {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "ray/border/adjacency.h"
 #include "ray/line/ray_line.h"
 #include "ray/line/set_view.h"
-#include "ray/seam/adjacency.h"
 #include "tess/closing/edge_runs.h"
 
 namespace tessera { inline namespace abi_0_1 {

@@ -1,13 +1,13 @@
 #pragma once
 // Tubes around the edges of shapes: where faces along an edge fail to meet, a ray may pass between them.
 //
-// Let C be the longest curve that a face has along an edge. For the curve F of each face there, with the lines that close
-// its gaps, let p map the edge's parameters of F to those of C: continuously, and ends to ends. Let g be a bound on the
-// distance of F(s) from C(p(s)). Segments between these points fill the slits between the faces, since C after p covers C
-// once, and lie in the tube of radius g about C. At a vertex, triangles from the end of one C to the ends of these
-// segments fill what is left, within a ball that the tube of this C holds too. Faces, segments and triangles together
-// are a closed cycle for a closed shell. So a ray that stays out of all tubes meets the faces of a closed shell an even
-// number of times, and an odd number of times between an inside and an outside point.
+// Let C be the longest curve that a face has along an edge. For the curve F of each face there, with the lines that
+// close its gaps, let p map the edge's parameters of F to those of C: continuously, and ends to ends. Let g be a bound
+// on the distance of F(s) from C(p(s)). Segments between these points fill the slits between the faces, since C after p
+// covers C once, and lie in the tube of radius g about C. At a vertex, triangles from the end of one C to the ends of
+// these segments fill what is left, within a ball that the tube of this C holds too. Faces, segments and triangles
+// together are a closed cycle for a closed shell. So a ray that stays out of all tubes meets the faces of a closed
+// shell an even number of times, and an odd number of times between an inside and an outside point.
 //
 // Any p does. At the samples of F it is the parameter of C's nearest point, found from equal parameters on, and in
 // between it is linear: faces may run along an edge at different paces. Where a curve has a gap that no line closes, p
@@ -21,8 +21,8 @@
 #include <span>
 #include <vector>
 
+#include "ray/border/lazy_adjacency.h"
 #include "ray/line/ray_query.h"
-#include "ray/seam/lazy_adjacency.h"
 #include "ray/tube/edge_curves.h"
 #include "tessera/execution.h"
 #include "tessera/status.h"

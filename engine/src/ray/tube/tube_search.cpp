@@ -79,8 +79,8 @@ struct Nearest {
   double share, distance;
 };
 
-/// Distances from a line. Parts behind its start do not count. Those beyond its end do, if they are near it: the nearest
-/// point decides whether the line ends before it.
+/// Distances from a line. Parts behind its start do not count. Those beyond its end do, if they are near it: the
+/// nearest point decides whether the line ends before it.
 class NearLine {
  public:
   using Point = SeenPoint;
@@ -160,9 +160,9 @@ void EdgeTubes::search(unsigned index, RayQuery& query) const {
   for (const TubeChord& chord : chords)
     if (!holds_origin) from_origin.walk(chord, [&](const LoopPoint&, bool) { holds_origin = true; });
   if (holds_origin) return;
-  first.certified = first.is_seam = true;
+  first.certified = first.is_on_edge = true;
   first.s = std::max(first.s, line.near);
-  query.take_seam(first, tube.gap);
+  query.take_edge(first, tube.gap);
 }
 
 }}  // namespace tessera::abi_0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "surface/net/collapsed_edges.h"
+#include "surface/net/collapsed_sides.h"
 #include "surface/net/patch_pieces.h"
 #include "surface/net/validate.h"
 #include "tessera/guard.h"
@@ -63,6 +63,6 @@ Box3 BezierPatch::hull_box() const {
   return box;
 }
 
-EdgeMask BezierPatch::collapsed_edges() const { return tessera::collapsed_edges(degree_u_, degree_v_, points()); }
+SideMask BezierPatch::collapsed_sides() const { return tessera::collapsed_sides(degree_u_, degree_v_, points()); }
 
 }}  // namespace tessera::abi_0_1

@@ -55,8 +55,8 @@ double profile_fraction(Profile profile, double from, double to, double t);
 struct GridParameter {
   double value = 0, slope = 1;
 };
-/// Converts the canonical parameter t on a surface over [from, to]. Beyond the ends further segments follow, so an angle
-/// a full turn away has a parameter a full turn away.
+/// Converts the canonical parameter t on a surface over [from, to]. Beyond the ends further segments follow, so an
+/// angle a full turn away has a parameter a full turn away.
 GridParameter grid_parameter(Profile profile, double from, double to, double t);
 /// Converts a parameter of the grid to the canonical one: the inverse of grid_parameter().
 double canonical_parameter(Profile profile, double from, double to, double t);

@@ -114,8 +114,8 @@ double ChordBound::distance_of(PatchSegments segments, bool anywhere) const {
   return most;
 }
 
-ChordBound::Straddling ChordBound::straddling(Rates rates, Edge border, int rate) {
-  const bool along_u = border == Edge::v0 || border == Edge::v1, begin = border == Edge::v0 || border == Edge::u0;
+ChordBound::Crossing ChordBound::crossing(Rates rates, Side border, int rate) {
+  const bool along_u = border == Side::v0 || border == Side::v1, begin = border == Side::v0 || border == Side::u0;
   const std::size_t half = along_u ? (begin ? 3 : 4) : (begin ? 1 : 2);
   const bool halved = (along_u ? rates.v : rates.u) % 2 == 0;
   return {halved ? half : 0, along_u ? Rates{rate, rates.v} : Rates{rates.u, rate}};

@@ -109,11 +109,11 @@ class ChordBound {
   /// The bound of a triangle that crosses the middle of a parameter, at a border of an odd rate beside an even one. Its
   /// box is no wider than the border's segments, so it lies in this one of pieces() and keeps the piece's chord at
   /// these rates.
-  struct Straddling {
+  struct Crossing {
     std::size_t piece;
     Rates rates;
   };
-  static Straddling straddling(Rates rates, Edge border, int rate);
+  static Crossing crossing(Rates rates, Side border, int rate);
   /// Returns the smallest real rate along the other parameter that keeps the tolerance, with the rate `fixed` along u
   /// or v; infinite if there is none. `even`: by the bounds of even rates, else of odd ones. Products are not used.
   double needed(double tolerance, int fixed, bool fixed_u, bool even) const;

@@ -70,8 +70,8 @@ Scaled<Vec3> normal_numerator(const HomogeneousNet& net, bool rational) {
 }
 
 /// Divides a field that vanishes at an edge by u, 1 - u, v or 1 - v.
-VectorNet divided(const VectorNet& net, Edge edge) {
-  const bool along_u = edge == Edge::u0 || edge == Edge::u1, low = edge == Edge::u0 || edge == Edge::v0;
+VectorNet divided(const VectorNet& net, Side edge) {
+  const bool along_u = edge == Side::u0 || edge == Side::u1, low = edge == Side::u0 || edge == Side::v0;
   VectorNet out;
   out.degree_u = net.degree_u - along_u;
   out.degree_v = net.degree_v - !along_u;
@@ -111,10 +111,10 @@ NormalNet normal_net(const BezierPatch& patch) {
       out.net(i, j) = 1 / (binomial(out.net.degree_u, i) * binomial(out.net.degree_v, j)) * out.net(i, j);
   // Each control point is a mean of products, each of at most two differences, with fewer roundings than 2^8.
   out.rounding = 0x1p-44 * largest_term(homogeneous, patch.is_rational());
-  for (const Edge edge : {Edge::u0, Edge::u1, Edge::v0, Edge::v1}) {
-    const bool along_u = edge == Edge::u0 || edge == Edge::u1;
+  for (const Side edge : {Side::u0, Side::u1, Side::v0, Side::v1}) {
+    const bool along_u = edge == Side::u0 || edge == Side::u1;
     const int degree = along_u ? out.net.degree_u : out.net.degree_v;
-    if (!patch.collapsed_edges().has(edge) || degree == 0) continue;
+    if (!patch.collapsed_sides().has(edge) || degree == 0) continue;
     out.net = divided(out.net, edge);
     out.rounding *= degree;
   }

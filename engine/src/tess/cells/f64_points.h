@@ -52,7 +52,7 @@ class F64Points {
     const int rate = along.rate();
     const Vec3 start = start_of(side);
     visit(0, start);
-    if (division.collapsed.has(edge_of(side))) {
+    if (division.collapsed.has(side)) {
       for (int k = 1; k < rate; ++k) visit(k, start);
     } else if (rate > 1) {
       const Curve border = border_along(side);

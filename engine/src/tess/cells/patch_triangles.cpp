@@ -1,6 +1,6 @@
 #include "tess/cells/patch_triangles.h"
 
-#include "surface/net/collapsed_edges.h"
+#include "surface/net/collapsed_sides.h"
 #include "tess/cells/write_triangle.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -25,26 +25,26 @@ bool has_no_area(const BezierPatch& patch, std::span<const Vec3> points) {
 // A cell with corners 00, 10, 11, 01 (first digit along u) is split from 00 to 11 into these two triangles.
 enum CellTriangle : unsigned { lower = 1, upper = 2 };  // 00 10 11 and 00 11 01
 
-/// Returns the triangles left of a cell some of whose edges have collapsed to points. Two collapsed edges that meet at
+/// Returns the triangles left of a cell some of whose edges have collapsed to points. Two collapsed sides that meet at
 /// 01 or at 10 make 00 and 11 one point as well.
-unsigned remaining(EdgeMask cell) {
-  const bool u0 = cell.has(Edge::u0), u1 = cell.has(Edge::u1), v0 = cell.has(Edge::v0), v1 = cell.has(Edge::v1);
+unsigned remaining(SideMask cell) {
+  const bool u0 = cell.has(Side::u0), u1 = cell.has(Side::u1), v0 = cell.has(Side::v0), v1 = cell.has(Side::v1);
   const bool keeps_lower = !v0 && !u1 && !(u0 && v1);
   const bool keeps_upper = !u0 && !v1 && !(v0 && u1);
   return (keeps_lower ? lower : 0u) | (keeps_upper ? upper : 0u);
 }
 
-/// Returns the collapsed edges of the patch that a cell lies at.
-EdgeMask edges_of_cell(EdgeMask patch, Rates rates, int iu, int iv) {
-  EdgeMask at;
-  if (iu == 0) at.add(Edge::u0);
-  if (iu == rates.u - 1) at.add(Edge::u1);
-  if (iv == 0) at.add(Edge::v0);
-  if (iv == rates.v - 1) at.add(Edge::v1);
+/// Returns the collapsed sides of the patch that a cell lies at.
+SideMask edges_of_cell(SideMask patch, Rates rates, int iu, int iv) {
+  SideMask at;
+  if (iu == 0) at.add(Side::u0);
+  if (iu == rates.u - 1) at.add(Side::u1);
+  if (iv == 0) at.add(Side::v0);
+  if (iv == rates.v - 1) at.add(Side::v1);
   return {static_cast<std::uint8_t>(at.bits & patch.bits)};
 }
 
-/// Sums up what is left of a patch's cells: `all` for each, but count(remaining()) for those at collapsed edges.
+/// Sums up what is left of a patch's cells: `all` for each, but count(remaining()) for those at collapsed sides.
 template <class Count>
 std::size_t remaining_count(const PatchShape& shape, Rates rates, std::size_t all, const Count& count) {
   if (shape.is_curve) return 0;
@@ -73,7 +73,7 @@ std::uint32_t* write_whole_cells(std::uint32_t first, std::uint32_t row, int cou
   return to;
 }
 
-PatchShape shape_of(const BezierPatch& patch, std::span<const Vec3> points, EdgeMask collapsed) {
+PatchShape shape_of(const BezierPatch& patch, std::span<const Vec3> points, SideMask collapsed) {
   PatchShape shape;
   shape.degree_u = static_cast<std::uint8_t>(patch.degree_u());
   shape.degree_v = static_cast<std::uint8_t>(patch.degree_v());
@@ -84,12 +84,12 @@ PatchShape shape_of(const BezierPatch& patch, std::span<const Vec3> points, Edge
 
 }  // namespace
 
-PatchShape PatchShape::of(const BezierPatch& patch, EdgeMask collapsed) {
+PatchShape PatchShape::of(const BezierPatch& patch, SideMask collapsed) {
   return shape_of(patch, patch.points(), collapsed);
 }
 
 PatchShape PatchShape::of(const BezierPatch& patch, std::span<const Vec3> points) {
-  return shape_of(patch, points, collapsed_edges(patch.degree_u(), patch.degree_v(), points));
+  return shape_of(patch, points, collapsed_sides(patch.degree_u(), patch.degree_v(), points));
 }
 
 std::size_t triangle_count(const PatchShape& shape, Rates rates) {

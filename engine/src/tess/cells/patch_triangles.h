@@ -12,12 +12,12 @@ namespace tessera { inline namespace abi_0_1 {
 /// The properties of a patch that decide which triangles it has.
 struct PatchShape {
   std::uint8_t degree_u = 0, degree_v = 0;
-  EdgeMask collapsed;
+  SideMask collapsed;
   bool is_curve = false;  ///< a curve or a point: no triangle has an area
 
-  static PatchShape of(const BezierPatch& patch) { return of(patch, patch.collapsed_edges()); }
-  /// `collapsed`: patch.collapsed_edges().
-  static PatchShape of(const BezierPatch& patch, EdgeMask collapsed);
+  static PatchShape of(const BezierPatch& patch) { return of(patch, patch.collapsed_sides()); }
+  /// `collapsed`: patch.collapsed_sides().
+  static PatchShape of(const BezierPatch& patch, SideMask collapsed);
   /// The shape that the patch would have with as many other control points.
   static PatchShape of(const BezierPatch& patch, std::span<const Vec3> points);
   friend bool operator==(const PatchShape& a, const PatchShape& b) {

@@ -80,8 +80,7 @@ constexpr int max_at_ends = 3;
 bool Division::joins_borders(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders,
                              bool across_u) {
   const Side first = across_u ? Side::v0 : Side::u0, last = across_u ? Side::v1 : Side::u1;
-  if ((across_u ? asked.u : asked.v).rate() != 1 || shape.collapsed.has(edge_of(first)) ||
-      shape.collapsed.has(edge_of(last)))
+  if ((across_u ? asked.u : asked.v).rate() != 1 || shape.collapsed.has(first) || shape.collapsed.has(last))
     return false;
   const int most =
       std::max(borders[static_cast<std::size_t>(first)].rate(), borders[static_cast<std::size_t>(last)].rate());
@@ -92,7 +91,7 @@ std::size_t Division::special_triangle_count() const {
   if (empty) return 0;
   std::size_t count = 0;
   for (const Side side : all_sides)
-    if (!collapsed.has(edge_of(side))) count += border[static_cast<std::size_t>(side)].rate();
+    if (!collapsed.has(side)) count += border[static_cast<std::size_t>(side)].rate();
   if (!has_inner_points()) return count - 2;  // a polygon of `count` sides has count - 2 triangles
   return count + 2 * (inner_count() - 1);
 }
@@ -130,7 +129,7 @@ std::uint32_t* Division::write_triangles(std::uint32_t first, std::uint32_t* to,
   const auto line = [&](Side side, bool backward) {
     const Segments along = along_ring(side);
     const std::uint32_t begin = start[static_cast<std::size_t>(side)];
-    return whole_line(backward ? along.reversed() : along, collapsed.has(edge_of(side)), [=](int k) {
+    return whole_line(backward ? along.reversed() : along, collapsed.has(side), [=](int k) {
       const std::uint32_t at = begin + static_cast<std::uint32_t>(backward ? along.rate() - k : k);
       return ring + (at == ring_size ? 0 : at);
     });

@@ -24,7 +24,7 @@ namespace tessera { inline namespace abi_0_1 {
 struct Division {
   PatchSegments inner;               ///< both 1: no inner points
   std::array<Segments, 4> border{};  ///< by Side, along the parameter
-  EdgeMask collapsed;                ///< borders that are points: no triangle stands on them
+  SideMask collapsed;                ///< borders that are points: no triangle stands on them
   bool empty = false;                ///< a curve or a point: no vertices, no triangles
   bool across_u = false;             ///< without inner points: triangles go from border u0 to u1, else from v0 to v1
 
@@ -57,9 +57,10 @@ struct Division {
 
   /// Whether all borders are points.
   bool has_one_corner() const {
-    return std::ranges::all_of(all_sides, [this](Side side) { return collapsed.has(edge_of(side)); });
+    return std::ranges::all_of(all_sides, [this](Side side) { return collapsed.has(side); });
   }
-  /// Adds inner points where a patch has no triangles, because opposite borders are points: so many that there are some.
+  /// Adds inner points where a patch has no triangles, because opposite borders are points: so many that there are
+  /// some.
   void add_inner_points(PatchSegments asked) {
     const int least = has_one_corner() ? 4 : 2;  // even, so that no cell crosses the middle
     inner = {asked.u.rate() >= least ? asked.u : least, asked.v.rate() >= least ? asked.v : least};

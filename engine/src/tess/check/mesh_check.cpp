@@ -31,9 +31,9 @@ struct FloatPlaces {
 struct DoublePlaces {
   static constexpr double rounding = 0x1p-52;
   const Mesh& mesh;
-  DoublePositionBits bits(std::size_t vertex) const { return position_bits(&mesh.positions_f64[3 * vertex]); }
+  DoublePositionBits bits(std::size_t vertex) const { return position_bits(&mesh.model_positions[3 * vertex]); }
   Vec3 at(std::size_t vertex) const {
-    const double* const p = &mesh.positions_f64[3 * vertex];
+    const double* const p = &mesh.model_positions[3 * vertex];
     return {p[0], p[1], p[2]};
   }
 };
@@ -74,8 +74,8 @@ Status check_counts(const Mesh& mesh) {
   if (mesh.quads.size() % 4 != 0) return bad(std::to_string(mesh.quads.size()) + " indices are not four per quad");
   if (mesh.vertex_count() > max_vertices)
     return bad(std::to_string(mesh.vertex_count()) + " vertices are more than " + std::to_string(max_vertices));
-  if (!fits(mesh.positions_f64, mesh.positions.size()))
-    return bad(std::to_string(mesh.positions_f64.size()) + " numbers in positions in double, " +
+  if (!fits(mesh.model_positions, mesh.positions.size()))
+    return bad(std::to_string(mesh.model_positions.size()) + " numbers in positions in double, " +
                std::to_string(mesh.positions.size()) + " in positions");
   if (!fits(mesh.normals, mesh.positions.size()))
     return bad(std::to_string(mesh.normals.size()) + " numbers in normals, " + std::to_string(mesh.positions.size()) +
@@ -212,7 +212,7 @@ Result<MeshReport> check(const Mesh& mesh) {
     const std::size_t vertices = mesh.vertex_count();
     if (Status status = check_indices(mesh.indices, 3, "triangle", vertices); !status.ok()) return status;
     if (Status status = check_indices(mesh.quads, 4, "quad", vertices); !status.ok()) return status;
-    return mesh.positions_f64.empty() ? count(mesh, FloatPlaces{mesh}) : count(mesh, DoublePlaces{mesh});
+    return mesh.model_positions.empty() ? count(mesh, FloatPlaces{mesh}) : count(mesh, DoublePlaces{mesh});
   });
 }
 

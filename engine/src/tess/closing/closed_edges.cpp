@@ -21,7 +21,7 @@ std::uint32_t first_at_pole(const Division& division, std::uint32_t vertex) {
              end = static_cast<std::uint32_t>(division.vertex_count());
   if (!division.collapsed.any() || vertex < first || vertex >= end) return vertex;
   if (division.has_one_corner()) return first;
-  const auto is_pole = [&](std::size_t side) { return division.collapsed.has(edge_of(all_sides[side])); };
+  const auto is_pole = [&](std::size_t side) { return division.collapsed.has(all_sides[side]); };
   const auto count = [&](std::size_t side) { return static_cast<std::uint32_t>(division.border[side].rate()); };
   std::size_t side = 0;
   std::uint32_t start = first;  // of the side
@@ -294,8 +294,8 @@ class Closer {
     }
   }
 
-  /// Moves places to the vertices that the shape states, where the faces' points lie around these. Once edits have moved
-  /// the faces away, they do not.
+  /// Moves places to the vertices that the shape states, where the faces' points lie around these. Once edits have
+  /// moved the faces away, they do not.
   void put_at_vertices(std::span<const Box3> boxes) {
     constexpr double slack = 1e-3;  // of the box, which is flat where faces agree
     const std::span<const Vec3> vertices = set_.edges->vertices;

@@ -29,8 +29,8 @@ struct ClosedEdges {
   struct Member {
     std::uint32_t patch, vertex;
   };
-  /// Vertices grouped by place. All vertices of a place get one position: the centre of the box of their own, or a vertex
-  /// of the shape in it.
+  /// Vertices grouped by place. All vertices of a place get one position: the centre of the box of their own, or a
+  /// vertex of the shape in it.
   std::vector<Member> members;
   std::vector<std::uint32_t> first_members;  ///< by place, and their number at the end
   std::vector<Vec3> places;                  ///< positions relative to the set's origin
@@ -57,9 +57,9 @@ struct DividedFaces {
   const std::atomic<bool>* cancel;  ///< looked at for each edge and each patch, unless null
 };
 
-/// Finds the vertices of all edges, and inserts those that patches lack: into the cut patches, and as edits into others.
-/// Distances of cut patches are extended to their new triangles. If cancelled, cut patches may be divided in part.
-/// Errors: cancelled.
+/// Finds the vertices of all edges, and inserts those that patches lack: into the cut patches, and as edits into
+/// others. Distances of cut patches are extended to their new triangles. If cancelled, cut patches may be divided in
+/// part. Errors: cancelled.
 Result<ClosedEdges> close_edges(const DividedFaces& faces);
 
 }}  // namespace tessera::abi_0_1

@@ -66,8 +66,8 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   const CurveAlongEdge curve = runs_.curve(run);
   join_corner(runs_.edges().faces[run.face], pieces.front().start());
   join_corner(runs_.edges().faces[run.face], pieces.back().end());
-  const bool is_point = cut ? cut->poles[static_cast<std::size_t>(run.side)] != no_id
-                            : divisions_[run.patch].collapsed.has(edge_of(run.side));
+  const bool is_point =
+      cut ? cut->poles[static_cast<std::size_t>(run.side)] != no_id : divisions_[run.patch].collapsed.has(run.side);
   if (is_point) {
     const PatchVertex point{run.patch, side[0].vertex};
     for (std::size_t k = 0; k < side.size(); ++k) same_.push_back({point, PatchVertex{run.patch, side[k].vertex}});
@@ -156,8 +156,8 @@ std::optional<std::uint32_t> EdgeSegments::corner_vertex(std::uint32_t patch, bo
   return side[end_u ? side.size() - 1 : 0].vertex;
 }
 
-// A neighbour often has the vertex in a run of its own, but not where the loop leaves the patch along a line that closes
-// a gap, or where rounding puts a chord's end on a side.
+// A neighbour often has the vertex in a run of its own, but not where the loop leaves the patch along a line that
+// closes a gap, or where rounding puts a chord's end on a side.
 void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uint32_t vertex) {
   const ParameterPoint& local = cut.vertices[vertex];
   const bool on_u = local.u == 0 || local.u == 1, on_v = local.v == 0 || local.v == 1;

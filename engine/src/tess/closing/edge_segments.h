@@ -25,7 +25,7 @@ struct InsertedVertex {
   bool is_on_chord = false;          ///< else it is on a side
 };
 
-/// A vertex of a patch: one that it has, or one of a list that it gets.
+/// A vertex of a patch: one that it has, or an index into the inserted ones.
 struct PatchVertex {
   static constexpr std::uint32_t inserted = 0x80000000;  ///< a bit of `vertex`: the rest is an index into the list
   std::uint32_t patch = 0, vertex = 0;
@@ -40,7 +40,7 @@ struct EdgeSegment {
   PatchVertex low, high;             ///< at `from` and at `to`
   std::uint32_t start = 0, end = 0;  ///< the boundary's own vertices; equal: a point, which gets no more vertices
   bool has_triangle = true;          ///< see CutPatch::LoopSegment
-  /// Whether it has the first of these, so that each segment of a boundary begins once, however many runs end in it.
+  /// Whether an end is the boundary's own vertex, so that each segment of a boundary counts once.
   bool begins() const { return low.vertex == start || high.vertex == start; }
 };
 
@@ -56,7 +56,8 @@ class EdgeSegments {
   void append(std::size_t edge, std::vector<EdgeSegment>& segments);
   /// Appends the segments of lines that close gaps between curves, after those of all edges. They have no parameters.
   void append_gaps(std::vector<EdgeSegment>& segments);
-  /// Vertices that are one, in pairs: corners of a face's patches, ends of chords on lines between them, and the points of a side that is one point.
+  /// Vertices that are one, in pairs: corners of a face's patches, ends of chords on lines between them, and the points
+  /// of a side that is one point.
   std::span<const std::array<PatchVertex, 2>> same() const { return same_; }
   std::span<const InsertedVertex> inserted() const { return inserted_; }
   /// Inserts a vertex into a segment, at a parameter of the edge between its ends. Returns the vertex.

@@ -46,8 +46,8 @@ void EdgeStations::find(const PatchSet::Impl& set, std::size_t edge,
     stations.insert(stations.end(), workspace.found.begin(), workspace.found.end());
     sort_distinct(stations, same);
   };
-  // The direction that needs more stations comes first: they often do for the other one. This does not depend on the order
-  // of faces.
+  // The direction that needs more stations comes first: they often do for the other one. This does not depend on the
+  // order of faces.
   const std::size_t along = divide_along(false), against = divide_along(true);
   const bool first = against > along;
   if (!first && along > 0) divide_along(false);

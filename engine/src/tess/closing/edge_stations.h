@@ -14,8 +14,8 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// The stations of each edge, before patches are cut: where its runs end, where sides of whole patches have vertices,
-/// and where chords and sides of cut patches must be divided for any of the faces. So the faces' triangles need few more
-/// vertices to meet.
+/// and where chords and sides of cut patches must be divided for any of the faces. So the faces' triangles need few
+/// more vertices to meet.
 class EdgeStations {
  public:
   /// Parameters within `same_share` of an edge's range count as one.

@@ -91,10 +91,10 @@ class EdgeFinder {
     }
     for (std::size_t lane = 0; lane < count; ++lane) {
       const std::size_t patch = patches[lane];
-      const EdgeMask collapsed = set_.collapsed[patch];
+      const SideMask collapsed = set_.collapsed[patch];
       for (const Side side : all_sides) {
         const auto s = static_cast<std::size_t>(side);
-        if (!collapsed.has(edge_of(side))) add(4 * patch + s, side, hashes[s * lanes + lane], met_[s][lane]);
+        if (!collapsed.has(side)) add(4 * patch + s, side, hashes[s * lanes + lane], met_[s][lane]);
       }
     }
   }

@@ -219,8 +219,8 @@ class Welder {
     const std::uint32_t edge = edge_of_border(border);
     return edge == no_id || is_pole_[canonical(edge)];
   }
-  /// Whether welding leaves nothing of a patch but a line or a point: opposite borders become points, and the patch is a
-  /// needle between them.
+  /// Whether welding leaves nothing of a patch but a line or a point: opposite borders become points, and the patch is
+  /// a needle between them.
   bool vanishes(std::uint32_t patch) {
     const auto is_point = [&](std::uint32_t side) { return is_made_point(4 * patch + side); };
     const bool u = is_point(1) && is_point(3), v = is_point(0) && is_point(2);
@@ -261,14 +261,14 @@ class Welder {
   void find_shapes() {
     weld_.shapes.assign(shapes_.begin(), shapes_.end());
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (is_pole_[canonical(edge)]) weld_.shapes[patch_of(border)].collapsed.add(tessera::edge_of(side_of(border)));
+      if (is_pole_[canonical(edge)]) weld_.shapes[patch_of(border)].collapsed.add(side_of(border));
     });
   }
 
   void join_corners(UnionFind& corners) {
     for (std::size_t patch = 0; patch < set_.patches.size(); ++patch)
       for (const Side side : all_sides)
-        if (weld_.shapes[patch].collapsed.has(tessera::edge_of(side))) {
+        if (weld_.shapes[patch].collapsed.has(side)) {
           const auto ends = ends_of(static_cast<std::uint32_t>(4 * patch) + static_cast<std::uint32_t>(side));
           corners.unite(ends[0], ends[1]);
         }

@@ -36,13 +36,11 @@ class NotedEdits {
 }  // namespace
 
 Status ProvenMesh::start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution) {
-  if (Status status = check_followed(set, plan_.patch_count(), revision_); !status.ok()) return status;
   if (Status status = check_updated_views(out, plan_.capacity(), plan_.patches().has_f64_positions); !status.ok())
     return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   PatchSet::Impl& inner = impl_of(set);
   if (!edits_) edits_ = std::make_unique<TouchedBlocks>(inner);
-  if (edits_->block_count() != inner.lane_counts.size()) return other_set();
   if (Status status = edits_->add(inner, edits); !status.ok()) return status;
   if (Status status = prepare_edits(inner, edits, *edits_, execution); !status.ok()) return status;
   return {};

@@ -45,7 +45,7 @@ Result<std::unique_ptr<Tessellation::Impl>> MergedMesh::make(const PatchSet& set
                                                              const Execution& execution) {
   Result<std::unique_ptr<ProvenMesh>> own = ProvenMesh::make(set, options, nullptr, execution);
   if (!own) return own.status();
-  std::unique_ptr<MergedMesh> mesh(new MergedMesh(*std::move(own), options.crease_angle.has_value()));
+  std::unique_ptr<MergedMesh> mesh(new MergedMesh(*std::move(own), options.joining.crease_angle.has_value()));
   if (Status status = mesh->find(set, {.cancel = execution.cancel}); !status.ok()) return status;
   return std::unique_ptr<Tessellation::Impl>(std::move(mesh));
 }
@@ -60,10 +60,10 @@ Status MergedMesh::find(const PatchSet& set, const Execution& execution) {
 bool MergedMesh::renumber(const Mesh& all) {
   const std::vector<float>& normals = has_normals_ ? all.normals : no_normals_;
   std::vector<std::uint32_t> numbers, sources;
-  if (all.positions_f64.empty())
+  if (all.model_positions.empty())
     number(all.positions, normals, numbers, sources);
   else
-    number(all.positions_f64, normals, numbers, sources);
+    number(all.model_positions, normals, numbers, sources);
   const bool is_same = numbers == numbers_;
   numbers_ = std::move(numbers);
   sources_ = std::move(sources);
@@ -81,7 +81,7 @@ Mesh MergedMesh::allocate() const {
   Mesh mesh = own_->allocate();
   for (std::vector<float>* values : {&mesh.positions, &mesh.normals})
     if (!values->empty()) values->resize(3 * sources_.size());
-  if (!mesh.positions_f64.empty()) mesh.positions_f64.resize(3 * sources_.size());
+  if (!mesh.model_positions.empty()) mesh.model_positions.resize(3 * sources_.size());
   if (!mesh.parameters.empty()) mesh.parameters.resize(2 * sources_.size());
   if (!has_normals_) mesh.normals.clear();
   return mesh;
@@ -103,7 +103,7 @@ MeshViews MergedMesh::views_for(const MeshViews& out, Mesh& own) const {
   own.positions.resize(out.position.empty() ? 0 : 3 * count);
   own.normals.resize(out.normal.empty() ? 0 : 3 * count);
   own.parameters.resize(out.parameter.empty() ? 0 : 2 * count);
-  own.positions_f64.resize(out.position_f64.empty() ? 0 : 3 * count);
+  own.model_positions.resize(out.model_position.empty() ? 0 : 3 * count);
   MeshViews views = own.views();
   if (out.position.empty()) views.position = {};
   views.patch = out.patch, views.indices = out.indices;
@@ -118,7 +118,7 @@ void MergedMesh::gather(const MeshViews& own, const MeshViews& out) const {
   for (std::size_t vertex = 0; vertex < sources_.size(); ++vertex) {
     if (!out.position.empty()) take(own.position, sources_[vertex], out.position, vertex, 3);
     if (!out.normal.empty()) take(own.normal, sources_[vertex], out.normal, vertex, 3);
-    if (!out.position_f64.empty()) take(own.position_f64, sources_[vertex], out.position_f64, vertex, 3);
+    if (!out.model_position.empty()) take(own.model_position, sources_[vertex], out.model_position, vertex, 3);
     if (!out.parameter.empty()) take(own.parameter, sources_[vertex], out.parameter, vertex, 2);
   }
 }

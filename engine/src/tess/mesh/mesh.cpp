@@ -53,7 +53,7 @@ MeshViews Mesh::views() {
   views.indices = indices;
   views.quads = quads;
   views.quad_patch = quad_patches;
-  if (!positions_f64.empty()) views.position_f64 = View3<double>::interleaved(positions_f64);
+  if (!model_positions.empty()) views.model_position = View3<double>::interleaved(model_positions);
   return views;
 }
 
@@ -68,7 +68,7 @@ Result<Mesh> split_quads(const Mesh& mesh) {
     Mesh split;
     split.origin = mesh.origin;
     split.positions = mesh.positions;
-    split.positions_f64 = mesh.positions_f64;
+    split.model_positions = mesh.model_positions;
     split.normals = mesh.normals;
     split.parameters = mesh.parameters;
     split.parts = mesh.parts;

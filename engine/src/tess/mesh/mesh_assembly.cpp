@@ -27,7 +27,7 @@ Status check_mesh(const Mesh& mesh) {
   const std::size_t vertices = mesh.vertex_count();
   const bool fits = mesh.positions.size() == 3 * vertices && mesh.indices.size() % 3 == 0 &&
                     mesh.quads.size() % 4 == 0 &&
-                    (mesh.positions_f64.empty() || mesh.positions_f64.size() == 3 * vertices) &&
+                    (mesh.model_positions.empty() || mesh.model_positions.size() == 3 * vertices) &&
                     (mesh.normals.empty() || mesh.normals.size() == 3 * vertices) &&
                     (mesh.parameters.empty() || mesh.parameters.size() == 2 * vertices);
   if (!fits) return {StatusCode::count_mismatch, "the mesh's arrays have lengths that do not fit each other"};
@@ -83,7 +83,7 @@ class Flattening {
       if (mesh.vertex_count() == 0) continue;
       has_normals_ &= !mesh.normals.empty();
       has_parameters_ &= !mesh.parameters.empty();
-      has_doubles_ &= !mesh.positions_f64.empty();
+      has_doubles_ &= !mesh.model_positions.empty();
     }
     if (!box.empty()) flat_.origin = box.centre();
   }
@@ -131,7 +131,7 @@ class Flattening {
     bool finite = true;
     for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
       finite &= append(flat_.positions, placement.vector(vector_at(mesh.positions, k)) + offset);
-      if (has_doubles_) finite &= append(flat_.positions_f64, placement.point(vector_at(mesh.positions_f64, k)));
+      if (has_doubles_) finite &= append(flat_.model_positions, placement.point(vector_at(mesh.model_positions, k)));
       if (!has_normals_) continue;
       const Vec3 normal = vector_at(mesh.normals, k);
       finite &= append(flat_.normals, turns ? sign * normalized(cofactors.vector(normal)) : normal);

@@ -60,7 +60,7 @@ struct Planned {
   CertifiedPlan plan;
 };
 
-/// Makes a plan. `tolerance`: the distance to keep, or to begin with if the smallest is wanted. `kept`: segments that
+/// Makes a plan. `tolerance`: the distance to keep, or any if there is a budget. `kept`: segments that
 /// patches keep where possible; if triangles then exceed their limit, none are kept.
 Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options, double tolerance,
                          const KeptSegments& kept, const Execution& execution) {
@@ -69,7 +69,7 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
   Result<PlanFacts> facts = find_plan_facts(impl_of(set), *planned, execution);
   if (!facts) return facts.status();
   const auto find_smallest = [&]() -> Status {
-    if (!options.smallest) return {};
+    if (!options.budget) return {};
     const Result<double> found = smallest_tolerance(*facts, options.max_triangles, execution);
     if (found) tolerance = *found;
     return found.status();
@@ -79,7 +79,7 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     planned->f64_patches = patches_that_need_f64(facts->needs, facts->borders.edges(), tolerance);
   if (!planned->f64_positions && !planned->f64_patches.empty()) {
     // Doubles may keep a smaller tolerance than the one found, and other patches may need doubles for it.
-    if (options.smallest) std::ranges::fill(planned->f64_patches, 1);
+    if (options.budget) std::ranges::fill(planned->f64_patches, 1);
     facts = find_plan_facts(impl_of(set), *planned, execution);
     if (!facts) return facts.status();
     found = find_smallest();
@@ -121,13 +121,14 @@ Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const 
 
 Result<std::unique_ptr<Tessellation::Impl>> make_proven_mesh(const PatchSet& set, const TessellationOptions& options,
                                                              const Execution& execution) {
-  const bool closes = impl_of(set).edges && options.close_edges;
-  if (options.share_vertices && (closes || set.cut_count() > 0)) {
-    TessellationOptions apart = options;
-    apart.share_vertices = false;
-    return MergedMesh::make(set, apart, execution);
+  TessellationOptions limited = options;
+  if (options.budget) limited.max_triangles = std::min(options.max_triangles, *options.budget);
+  const bool closes = impl_of(set).edges && options.joining.close_edges;
+  if (options.joining.share_vertices && (closes || set.cut_count() > 0)) {
+    limited.joining.share_vertices = false;
+    return MergedMesh::make(set, limited, execution);
   }
-  Result<std::unique_ptr<ProvenMesh>> made = ProvenMesh::make(set, options, nullptr, execution);
+  Result<std::unique_ptr<ProvenMesh>> made = ProvenMesh::make(set, limited, nullptr, execution);
   if (!made) return made.status();
   return std::unique_ptr<Tessellation::Impl>(*std::move(made));
 }
@@ -161,10 +162,10 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
 }
 
 Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution) {
-  if (!options_.crease_angle && !options_.share_vertices) return {};
+  if (!options_.joining.crease_angle && !options_.joining.share_vertices) return {};
   Mesh mesh;  // written while each patch still has its own vertices
   MeshViews views;
-  if (options_.crease_angle) {
+  if (options_.joining.crease_angle) {
     mesh = empty_mesh(plan_.capacity(), origin_);
     views = mesh.views();
     const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
@@ -174,9 +175,9 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const
     if (status.ok()) status = write_welded(weld_, plan_, set, views, quiet, [](std::size_t) { return true; });
     if (!status.ok()) return status;
   }
-  joins_ = find_joins(set, plan_, facts.borders.edges(), weld_, options_.crease_angle ? &views.normal : nullptr,
-                      options_.crease_angle.value_or(0));
-  if (!options_.share_vertices) return {};
+  joins_ = find_joins(set, plan_, facts.borders.edges(), weld_, options_.joining.crease_angle ? &views.normal : nullptr,
+                      options_.joining.crease_angle.value_or(0));
+  if (!options_.joining.share_vertices) return {};
   plan_.share(joins_);
   weld_shared_corners();
   return {};
@@ -203,7 +204,7 @@ void ProvenMesh::weld_shared_corners() {
 Mesh ProvenMesh::allocate() const {
   Mesh mesh = empty_mesh(capacity(), origin_);
   if (!has_normals()) mesh.normals.clear();
-  if (plan_.patches().has_f64_positions) mesh.positions_f64.resize(mesh.positions.size());
+  if (plan_.patches().has_f64_positions) mesh.model_positions.resize(mesh.positions.size());
   return mesh;
 }
 
@@ -224,8 +225,6 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   if (Status status = check_views(out, capacity(), plan_.patches().has_f64_positions); !status.ok()) return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  if (plan_.patches().rare->trims != impl_of(set).trims)
-    return {StatusCode::stale, "the plan was made for a set that other trimming loops cut"};
   const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
   if (Status status = parallel_for(plan_.patch_count(), written_per_task(plan_), execution, write); !status.ok())
@@ -236,9 +235,9 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   }
   if (Status status = write_copies(impl_of(set), out, execution, [](std::size_t) { return true; }); !status.ok())
     return status;
-  if (Status status = write_cut(impl_of(set), plan_, options_.crease_angle, out, execution); !status.ok())
+  if (Status status = write_cut(impl_of(set), plan_, options_.joining.crease_angle, out, execution); !status.ok())
     return status;
-  return plan_.closed() ? write_closed(impl_of(set), plan_, options_.crease_angle, out, execution) : Status();
+  return plan_.closed() ? write_closed(impl_of(set), plan_, options_.joining.crease_angle, out, execution) : Status();
 }
 
 }}  // namespace tessera::abi_0_1

@@ -46,7 +46,7 @@ class ProvenMesh final : public Tessellation::Impl {
   ProvenMesh(const PatchSet& set, const TessellationOptions& options, double tolerance, CertifiedPlan plan,
              const PlanFacts& facts, Isa isa);
 
-  bool has_normals() const { return !options_.share_vertices || options_.crease_angle; }
+  bool has_normals() const { return !options_.joining.share_vertices || options_.joining.crease_angle; }
   /// Checks that normals and quads are only written if there are any. Errors: invalid_argument.
   Status check_attributes(const MeshViews& out) const;
   /// Finds what neighbours share, if anything. Errors: cancelled.

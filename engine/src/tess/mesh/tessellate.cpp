@@ -27,6 +27,7 @@ Result<Mesh> with_parts(Result<Mesh> mesh, FunctionRef<Result<std::vector<MeshPa
 }  // namespace
 
 Result<Mesh> tessellate(const PatchSet& set, const TessellationOptions& options, const Execution& execution) {
+  if (const std::span<const Status> faults = set.trim_faults(); !faults.empty()) return faults.front();
   const Result<Tessellation> plan = Tessellation::make(set, options, execution);
   if (!plan) return plan.status();
   if (const auto beyond = plan->patches_beyond_tolerance(); !beyond.empty())
@@ -57,7 +58,6 @@ Result<Mesh> tessellate(const Surface& surface, const TessellationOptions& optio
 Result<Mesh> tessellate(const Shape& shape, const TessellationOptions& options, const Execution& execution) {
   const Result<PatchSet> set = make_patch_set(shape);
   if (!set) return set.status();
-  if (const std::span<const Status> faults = set->trim_faults(); !faults.empty()) return faults.front();
   const auto parts = [&](const Mesh& mesh) { return parts_by_face(mesh, *set, shape); };
   return with_parts(tessellate(*set, options, execution), parts);
 }

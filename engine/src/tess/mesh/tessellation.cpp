@@ -25,12 +25,20 @@ double largest(std::span<const float> values) {
 Tessellation::Impl::Impl() = default;
 Tessellation::Impl::~Impl() = default;
 
+void Tessellation::Impl::follow(const PatchSet& set) { identity_ = impl_of(set).identity; }
+
+Status Tessellation::Impl::check_set(const PatchSet& set) const {
+  if (impl_of(set).identity == identity_) return {};
+  return {StatusCode::stale, "the plan was made for another set: make a new plan for this one"};
+}
+
 Result<Tessellation> Tessellation::make(const PatchSet& set, const TessellationOptions& options,
                                         const Execution& execution) {
   return guarded([&]() -> Result<Tessellation> {
     Result<std::unique_ptr<Impl>> made =
         options.rates ? make_uniform_mesh(set, options) : make_proven_mesh(set, options, execution);
     if (!made) return made.status();
+    (*made)->follow(set);
     return Tessellation(*std::move(made));
   });
 }
@@ -70,7 +78,10 @@ Result<Mesh> Tessellation::allocate() const {
 }
 
 Status Tessellation::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {
-  return guarded([&] { return impl_->run(set, out, execution); });
+  return guarded([&] {
+    const Status status = impl_->check_set(set);
+    return status.ok() ? impl_->run(set, out, execution) : status;
+  });
 }
 
 Result<MeshChange> Tessellation::Impl::update_surfaces(PatchSet& set, std::span<const SurfaceEdits> edits,
@@ -85,12 +96,18 @@ Result<MeshChange> Tessellation::Impl::update_surfaces(PatchSet& set, std::span<
 
 Result<MeshChange> Tessellation::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                         const Execution& execution) {
-  return guarded([&] { return impl_->update(set, edits, out, execution); });
+  return guarded([&]() -> Result<MeshChange> {
+    if (Status status = impl_->check_set(set); !status.ok()) return status;
+    return impl_->update(set, edits, out, execution);
+  });
 }
 
 Result<MeshChange> Tessellation::update(PatchSet& set, std::span<const SurfaceEdits> edits, const MeshViews& out,
                                         const Execution& execution) {
-  return guarded([&] { return impl_->update_surfaces(set, edits, out, execution); });
+  return guarded([&]() -> Result<MeshChange> {
+    if (Status status = impl_->check_set(set); !status.ok()) return status;
+    return impl_->update_surfaces(set, edits, out, execution);
+  });
 }
 
 }}  // namespace tessera::abi_0_1

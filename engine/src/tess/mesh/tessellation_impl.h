@@ -28,6 +28,11 @@ class Tessellation::Impl {
   Impl& operator=(const Impl&) = delete;
   virtual ~Impl();
 
+  /// Makes a set the one that the plan is for.
+  void follow(const PatchSet& set);
+  /// Checks that a set is the one that the plan is for. Errors: stale.
+  Status check_set(const PatchSet& set) const;
+
   virtual Proof proof() const { return {}; }
   virtual MeshCapacity capacity() const = 0;
   virtual MeshCapacity before(std::size_t patch) const = 0;
@@ -39,6 +44,7 @@ class Tessellation::Impl {
                                      const Execution& execution);
 
  private:
+  std::shared_ptr<const void> identity_;      ///< of the set that the plan is for
   std::unique_ptr<EditedSurfaces> surfaces_;  ///< made by the first update of splines
 };
 

@@ -28,16 +28,18 @@ double at_most_max_weld(double weld, const PatchSet& set) {
 }
 
 /// Checks how borders and edges are joined.
-Status check_joining(const TessellationOptions& options, const PatchSet& set) {
+Status check_joining(const Joining& joining, const PatchSet& set) {
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
-  const double weld = options.weld.value_or(0);
+  if (joining.crease_angle && !(*joining.crease_angle >= 0 && *joining.crease_angle <= std::numbers::pi))
+    return bad("the crease angle is " + text(*joining.crease_angle) + " radians, it must be from 0 to pi");
+  const double weld = joining.weld.value_or(0);
   if (!(weld >= 0 && std::isfinite(weld)))
     return bad("the weld is " + text(weld) + ", it must be finite and at least 0");
   if (weld > 0 && weld > at_most_max_weld(weld, set))
     return bad("the weld is " + text(weld) + ", more than a twentieth of the model's size, " +
                text(set.model_box().diagonal()));
-  if (options.max_gap && !(*options.max_gap >= 0))
-    return bad("the largest gap is " + text(*options.max_gap) + ", it must be at least 0");
+  if (joining.max_gap && !(*joining.max_gap >= 0))
+    return bad("the largest gap is " + text(*joining.max_gap) + ", it must be at least 0");
   return {};
 }
 
@@ -46,8 +48,10 @@ Status check_joining(const TessellationOptions& options, const PatchSet& set) {
 Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set) {
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
   // The conditions are written so that NaN fails.
-  if (!options.tolerance && !options.angle && !options.pixels && !options.smallest)
-    return bad("there are neither rates nor a tolerance: set rates, a distance, an angle, pixels or the smallest");
+  if (!options.tolerance && !options.angle && !options.pixels && !options.budget)
+    return bad("there are neither rates nor a tolerance: set rates, a distance, an angle, pixels or a budget");
+  if (options.tolerance && options.budget)
+    return bad("there are both a tolerance and a budget, which finds the tolerance: set one of them");
   if (!(options.spare >= 0 && std::isfinite(options.spare)))
     return bad("the spare is " + text(options.spare) + ", it must be finite and at least 0");
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
@@ -59,14 +63,12 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
                std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
-  if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= std::numbers::pi))
-    return bad("the crease angle is " + text(*options.crease_angle) + " radians, it must be from 0 to pi");
-  if (Status status = check_joining(options, set); !status.ok()) return status;
+  if (Status status = check_joining(options.joining, set); !status.ok()) return status;
   PlannerOptions planner;
-  planner.closes_edges = options.close_edges;
-  planner.max_gap = options.max_gap.value_or(std::numeric_limits<double>::infinity());
-  if (options.weld) {
-    planner.weld.reach = *options.weld;
+  planner.closes_edges = options.joining.close_edges;
+  planner.max_gap = options.joining.max_gap.value_or(std::numeric_limits<double>::infinity());
+  if (options.joining.weld) {
+    planner.weld.reach = *options.joining.weld;
   } else if (options.tolerance && !options.relative) {
     planner.weld = {at_most_max_weld(*options.tolerance / 8, set), true};
   } else {
@@ -76,7 +78,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
-  planner.keeps_bounds = options.smallest;
+  planner.keeps_bounds = options.budget.has_value();
   planner.f64_positions = options.precision == Precision::double_precision;
   if (planner.f64_positions) planner.f64_patches.assign(set.patch_count(), 1);
   if (!options.pixels) return planner;

@@ -132,12 +132,10 @@ class UniformMesh final : public Tessellation::Impl {
   /// `keeps_shapes` if an edit changes which triangles its patch has.
   Status start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, std::atomic<bool>& keeps_shapes,
                const Execution& execution) {
-    if (Status status = check_followed(set, shapes_.size(), revision_); !status.ok()) return status;
     if (Status status = check_updated_views(out, capacity()); !status.ok()) return status;
     if (Status status = quads_ ? Status() : check_no_quads(out); !status.ok()) return status;
     PatchSet::Impl& inner = impl_of(set);
     if (!edits_) edits_.emplace(inner);
-    if (edits_->block_count() != inner.lane_counts.size()) return other_set();
     if (Status status = edits_->add(inner, edits); !status.ok()) return status;
     const auto compare = [&](std::uint32_t patch, std::span<const Vec3> points) {
       if (!(PatchShape::of(inner.patches[patch], points) == shapes_[patch])) keeps_shapes = false;
@@ -207,7 +205,7 @@ class UniformMesh final : public Tessellation::Impl {
 
 Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& set, const TessellationOptions& options) {
   const UniformRates rates = *options.rates;
-  if (options.tolerance || options.angle || options.pixels || options.smallest)
+  if (options.tolerance || options.angle || options.pixels || options.budget)
     return invalid("there are both rates and a tolerance: set one of them");
   if (set.cut_count() > 0)
     return Status(StatusCode::unsupported, "uniform rates need whole patches, and trimming loops cut " +

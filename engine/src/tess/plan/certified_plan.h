@@ -65,8 +65,8 @@ struct DividedPatches {
   std::vector<PatchSegments> segments = {};     ///< `[patch]`: that it needs for itself
   std::vector<float> bounds = {};               ///< `[patch]`
   std::vector<float> angles = {}, pixels = {};  ///< `[patch]`; empty if no angle, or no pixels, were set
-  std::vector<std::uint8_t> straddles =
-      {};  ///< `[patch]`: 1 if its bounds hold across its middle too; empty if for none
+  /// `[patch]`: 1 if its bounds hold for triangles that cross its middle, too; empty if for none.
+  std::vector<std::uint8_t> crosses = {};
 
   // By divide_patches():
   std::vector<Division> divisions = {};  ///< `[patch]`; those of cut patches are empty but for the borders' segments

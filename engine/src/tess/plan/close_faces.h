@@ -6,8 +6,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Cuts the patches that loops cut, and fills DividedPatches::closed. All patches are divided, if none is cut. Errors:
-/// invalid_argument (more triangles than the limit), cancelled.
+/// Cuts the patches that loops cut, and fills DividedPatches::closed. If none is cut, all must be divided before.
+/// Errors: invalid_argument (more triangles than the limit), cancelled.
 Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPatches& patches,
                    const Execution& execution);
 

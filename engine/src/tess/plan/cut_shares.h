@@ -14,8 +14,8 @@ namespace tessera { inline namespace abi_0_1 {
 /// A patch above its limits gets a smaller share, and so more cells, in the next attempt. That may not help: a loop's
 /// own error does not shrink with the cells. So a patch whose cells have become four times as many without a gain of a
 /// twentieth is settled: it returns to the share of its least excess, and keeps the bound that it has there. Each
-/// patch is settled or within its limits after a bounded number of attempts, because its excess is at least 1 before and
-/// each gain divides it.
+/// patch is settled or within its limits after a bounded number of attempts, because its excess is at least 1 before
+/// and each gain divides it.
 class CutShares {
  public:
   /// `share`: the first of each patch.

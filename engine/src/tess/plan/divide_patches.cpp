@@ -14,17 +14,17 @@ namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// At higher rates of a patch, an odd border rate instead of the next even one saves too little to look for.
-constexpr int max_to_straddle = 2;
+constexpr int max_to_cross = 2;
 
 /// Returns the distance of the triangle that crosses the middle of an odd border, for a patch whose even rate along it
 /// has a bound of halves.
-double straddling_distance(const PatchNeeds& needs, PatchSegments segments, std::size_t patch, Side side) {
-  // The border has an odd number of segments, more than the patch needs, so its middle segment crosses the middle of the
-  // patch. Without inner points between them, the opposite border's may cross it too. That border is taken to have an odd
-  // number as well: its real rate depends on patches that this one does not touch.
-  assert(segments.are_uniform());  // only patches of at most max_to_straddle segments come here
+double crossing_distance(const PatchNeeds& needs, PatchSegments segments, std::size_t patch, Side side) {
+  // The border has an odd number of segments, more than the patch needs, so its middle segment crosses the middle of
+  // the patch. Without inner points between them, the opposite border's may cross it too. That border is taken to have
+  // an odd number as well: its real rate depends on patches that this one does not touch.
+  assert(segments.are_uniform());  // only patches of at most max_to_cross segments come here
   const int rate = along(segments, side).rate() + 1;
-  const auto [piece, rates] = ChordBound::straddling(segments.rates(), edge_of(side), rate);
+  const auto [piece, rates] = ChordBound::crossing(segments.rates(), side, rate);
   const PatchSet::Slot slot = needs.set().slots[patch];
   return needs.chords().piece(slot.block, slot.lane, piece).chord(rates) + needs.given(patch);
 }
@@ -190,28 +190,28 @@ void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& pa
   // Only distances are known for triangles that cross the middle; angles and pixels hold for halves.
   const bool by_distance = patches.angles.empty() && patches.pixels.empty();
   const auto is_coarse = [&](std::size_t k) {
-    return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_straddle;
+    return by_distance && std::max(segments[k].u.rate(), segments[k].v.rate()) <= max_to_cross;
   };
-  const std::uint8_t *const straddles = patches.straddles.empty() ? nullptr : patches.straddles.data(),
+  const std::uint8_t *const crosses = patches.crosses.empty() ? nullptr : patches.crosses.data(),
                             *const cuts = set.trims ? set.trims->is_cut.data() : nullptr;
-  const auto always_straddles = [straddles](std::size_t k) { return straddles && straddles[k]; };
+  const auto always_crosses = [crosses](std::size_t k) { return crosses && crosses[k]; };
   BorderSegments borders(segments, facts.borders.edges());
   bool are_uniform = true;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const bool is_cut = cuts && cuts[k];
     if (!shapes[k].is_curve || is_cut)
-      borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_straddles(k)));
+      borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_crosses(k)));
     are_uniform &= segments[k].are_uniform();
   }
   if (!are_uniform) borders.part(facts.borders.against(facts.needs));
   borders.share(facts.borders.in_step());
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
-      if (!is_coarse(k) || shapes[k].is_curve || always_straddles(k)) continue;
+      if (!is_coarse(k) || shapes[k].is_curve || always_crosses(k)) continue;
       for (const Side side : all_sides) {
         if (!borders.is_even_edge(k, side)) continue;
         if (!borders.of(k)[static_cast<std::size_t>(side)].parts_halves())
-          visit(k, side, straddling_distance(facts.needs, segments[k], k, side));
+          visit(k, side, crossing_distance(facts.needs, segments[k], k, side));
       }
     }
   };

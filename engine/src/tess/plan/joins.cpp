@@ -58,7 +58,7 @@ class Joiner {
 
   void join_poles() {
     for_borders([&](std::uint32_t border, std::uint32_t) {
-      if (!plan_.division(border / 4).collapsed.has(edge_of(all_sides[border % 4]))) return;
+      if (!plan_.division(border / 4).collapsed.has(all_sides[border % 4])) return;
       const RingVertices ring(plan_, border);
       for (int k = 1; k <= ring.rate(); ++k)
         if (!agree(ring(k), ring(0))) return;

@@ -13,7 +13,8 @@ Result<CertifiedPlan> make_plan(const PlanFacts& facts, const PlanRequest& reque
 /// Makes the plan with the fewer triangles, by fewest segments or by plain ones. Errors: as for make_plan().
 Result<CertifiedPlan> make_leaner_plan(const PlanFacts& facts, const PlanRequest& request, const Execution& execution);
 
-/// Makes the plan as make_leaner_plan() does, and refuses one beyond the limits. Errors also: invalid_argument (more triangles than the limit, more vertices than 32-bit indices).
+/// Makes a plan as make_leaner_plan() does. Errors also: invalid_argument (more triangles than the limit, more vertices
+/// than 32-bit indices).
 Result<CertifiedPlan> make_limited_plan(const PlanFacts& facts, const PlanRequest& request, const Execution& execution);
 
 /// Returns the smallest tolerance 2^(k/128), for whole k, whose mesh has at most max_triangles, and at least 1e-6 of

@@ -67,10 +67,9 @@ void PatchNeeds::take_weld(const Weld& weld) {
   for (std::size_t k = 0; k < weld.displacements.size(); ++k)
     roundings_[k] = std::max(roundings_[k], weld.displacements[k]);
   for (std::size_t k = 0; k < weld.shapes.size(); ++k) {
-    EdgeMask poles;
+    SideMask poles;
     for (const Side side : all_sides)
-      if (const Edge edge = edge_of(side); weld.shapes[k].collapsed.has(edge) && !shapes_[k].collapsed.has(edge))
-        poles.add(edge);
+      if (weld.shapes[k].collapsed.has(side) && !shapes_[k].collapsed.has(side)) poles.add(side);
     welded_poles_.push_back(poles);
   }
 }
@@ -107,7 +106,7 @@ void PatchNeeds::bound_pictures(std::size_t block) {
 
 PatchNeeds::NormalTurning PatchNeeds::turning_of(std::size_t patch) const {
   const auto is_made_pole = [&](Side side) {  // by welding
-    return !welded_poles_.empty() && welded_poles_[patch].has(edge_of(side));
+    return !welded_poles_.empty() && welded_poles_[patch].has(side);
   };
   const TurningBound turning(set_->patches[patch], *options_.angle);
   if (turning.is_finite() || std::ranges::none_of(all_sides, is_made_pole)) return {turning};
@@ -129,7 +128,7 @@ std::optional<Rates> rates_for(const CellLimits& limits, int most) {
 }
 
 /// Whether the kept segments of a patch are few enough compared with the best.
-bool is_spared(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
+bool keeps_segments(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
   return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
 }
 
@@ -210,7 +209,7 @@ ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, c
     if (choices.fewest().segments.cells() < proven.segments.cells()) proven = choices.fewest();
     proven.anywhere = false;
   }
-  if (!is_spared(kept, patch, proven.segments) || !keeps_others(kept.segments[patch])) return proven;
+  if (!keeps_segments(kept, patch, proven.segments) || !keeps_others(kept.segments[patch])) return proven;
   const PatchSegments had = kept.segments[patch];
   double keeps = chord.distance_of(had, anywhere);
   if (limits.chord && !(keeps <= limits.distance)) keeps = local_distance_of(*this, patch, had);
@@ -220,7 +219,7 @@ ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, c
 
 ProvenSegments keep_by_distance(const PatchNeeds& needs, std::size_t patch, double distance, const KeptSegments& kept,
                                 const ChordBlocks::Products* products, const ProvenSegments& best) {
-  if (!is_spared(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
+  if (!keeps_segments(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
   const PatchSet::Slot slot = needs.set().slots[patch];
   const PatchSegments had = kept.segments[patch];
   double keeps = needs.chords().distance_of(had, slot.block, slot.lane, products);

@@ -41,8 +41,8 @@ struct NeededSegments {
 
 /// The shapes, bounds and roundings of all patches of a set.
 ///
-/// Use: bound_block() of all blocks, take_weld(), bound_views(); then the patches' needs may be asked for, by any number
-/// of threads. Edits are followed block by block, see PlanUpdate.
+/// Use: bound_block() of all blocks, take_weld(), bound_views(); then the patches' needs may be asked for, by any
+/// number of threads. Edits are followed block by block, see PlanUpdate.
 class PatchNeeds {
  public:
   /// The set must outlive this object.
@@ -50,7 +50,8 @@ class PatchNeeds {
 
   /// Finds shapes, bounds and roundings of the patches of one block. Threads: any number, each with its own block.
   void bound_block(std::size_t block);
-  /// Adds the displacements of welded vertices to the roundings, and takes note of the borders that welding makes points.
+  /// Adds the displacements of welded vertices to the roundings, and takes note of the borders that welding makes
+  /// points.
   void take_weld(const Weld& weld);
   /// Bounds how normals turn, if they are kept, and what the camera sees. Errors: cancelled.
   Status bound_views(const Execution& execution);
@@ -102,7 +103,7 @@ class PatchNeeds {
   std::vector<PatchShape> shapes_;
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding
   double largest_rounding_ = 0;
-  std::vector<EdgeMask> welded_poles_;      ///< `[patch]`: borders that welding makes points; empty if it makes none
+  std::vector<SideMask> welded_poles_;      ///< `[patch]`: borders that welding makes points; empty if it makes none
   std::vector<NormalTurning> turnings_;     ///< `[patch]`, if PlannerOptions::keeps_bounds and there is an angle
   std::vector<ScreenSpaceBound> pictures_;  ///< `[patch]`, if there is a camera
 };

@@ -95,7 +95,7 @@ void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
     else
       needs.set_rounding(patch, rounding);
     const PatchShape& shape = needs.shapes()[patch];
-    const EdgeMask collapsed = of.set.collapsed[patch];
+    const SideMask collapsed = of.set.collapsed[patch];
     const bool keeps_shape = collapsed.any() ? PatchShape::of(of.set.patches[patch], collapsed) == shape
                                              : !shape.collapsed.any() && !shape.is_curve;
     if (!keeps_shape || !(rounding <= most || needs.is_f64(patch))) is_unknown_ = true;
@@ -139,7 +139,7 @@ void PlanUpdate::choose(const PlanOfSet& of, std::uint32_t block, std::uint32_t 
     const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
     const NeededSegments needed = facts_.needs.segments_for(patch, request, max_rate);
     if (!needed.are_found()) is_unknown_ = true;
-    if (!needed.anywhere && of.plan.patches().straddles[patch]) is_redivided_ = true;
+    if (!needed.anywhere && of.plan.patches().crosses[patch]) is_redivided_ = true;
     set(of, patch,
         {needed.segments, needed.anywhere, rounded_up(needed.bound), rounded_up(needed.angle),
          rounded_up(needed.pixels)});
@@ -168,16 +168,16 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
         keep_by_distance(needs, patch, left[lane], kept, sharp, {best.rates[lane], best.distance[lane]});
     // If its segments change, its borders do, and redivided() proves them.
     const bool is_kept = proven.segments == of.plan.patches().segments[patch];
-    const double straddling = proven.anywhere || !is_kept ? 0 : straddling_distance(of, patch);
-    if (!(straddling <= left[lane])) is_redivided_ = true;
+    const double crossing = proven.anywhere || !is_kept ? 0 : crossing_distance(of, patch);
+    if (!(crossing <= left[lane])) is_redivided_ = true;
     const double given = of.tolerance - left[lane];
-    set(of, patch, {proven.segments, proven.anywhere, rounded_up(std::max(proven.distance, straddling) + given)});
+    set(of, patch, {proven.segments, proven.anywhere, rounded_up(std::max(proven.distance, crossing) + given)});
   }
   // The fewest segments are chosen for all patches together.
   if (needs.options().fewest && is_redivided_) is_unknown_ = true;
 }
 
-double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) const {
+double PlanUpdate::crossing_distance(const PlanOfSet& of, std::size_t patch) const {
   const PatchSegments segments = of.plan.patches().segments[patch];
   const Division& division = of.plan.division(patch);
   double most = 0;
@@ -188,7 +188,7 @@ double PlanUpdate::straddling_distance(const PlanOfSet& of, std::size_t patch) c
     const int rate =
         opposite.parts_halves() ? border.coarsest_rate() : std::min(border.coarsest_rate(), opposite.coarsest_rate());
     assert(segments.are_uniform());  // if they are not, the border has a point at 1/2
-    const auto [piece, rates] = ChordBound::straddling(segments.rates(), edge_of(side), rate);
+    const auto [piece, rates] = ChordBound::crossing(segments.rates(), side, rate);
     const PatchSet::Slot slot = of.set.slots[patch];
     most = std::max(most, facts_.needs.chords().piece(slot.block, slot.lane, piece).chord(rates));
   }
@@ -212,7 +212,7 @@ CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
                          .bounds = before.bounds,
                          .angles = before.angles,
                          .pixels = before.pixels,
-                         .straddles = before.straddles,
+                         .crosses = before.crosses,
                          .has_f64_positions = before.has_f64_positions};
   if (!before.rare->f64_patches.empty()) patches.rare.make().f64_patches = before.rare->f64_patches;
   for_proven(of.set, [&](std::size_t patch) {
@@ -221,7 +221,7 @@ CertifiedPlan PlanUpdate::redivided(const PlanOfSet& of) const {
     patches.bounds[patch] = proven.bound;
     if (!patches.angles.empty()) patches.angles[patch] = proven.angle;
     if (!patches.pixels.empty()) patches.pixels[patch] = proven.pixels;
-    if (!patches.straddles.empty()) patches.straddles[patch] = proven.anywhere;
+    if (!patches.crosses.empty()) patches.crosses[patch] = proven.anywhere;
   });
   divide_patches(facts_, of.tolerance, patches);
   return CertifiedPlan(std::move(patches));

@@ -77,7 +77,7 @@ class PlanUpdate {
   void choose_by_distance(const PlanOfSet& of, std::uint32_t block, std::uint32_t wanted);
   void set(const PlanOfSet& of, std::size_t patch, const Proven& proven);
   /// Returns the chord distance of triangles at borders of odd rates beside even ones; 0 if there are none.
-  double straddling_distance(const PlanOfSet& of, std::size_t patch) const;
+  double crossing_distance(const PlanOfSet& of, std::size_t patch) const;
   template <class Visit>
   void for_proven(const PatchSet::Impl& set, Visit visit) const;
 

@@ -29,8 +29,8 @@ class RatesByDistance {
     return parallel_for(needs_.set().lane_counts.size(), blocks_per_task, first, choose_some);
   }
 
-  /// Replaces the rates by those with which the patches together have the fewest triangles, if these are wanted. Errors:
-  /// cancelled.
+  /// Replaces the rates by those with which the patches together have the fewest triangles, if these are wanted.
+  /// Errors: cancelled.
   Status take_fewest(const Execution& execution) {
     if (choices_.empty()) return {};
     const auto no_others = [](PatchSegments) { return true; };
@@ -80,7 +80,7 @@ class RatesByDistance {
         request_.kept.segments.empty() ? best : keep_by_distance(needs_, patch, left, request_.kept, products, best);
     patches_.segments[patch] = proven.segments;
     patches_.bounds[patch] = rounded_up(proven.distance + needs_.given(patch));
-    if (proven.anywhere) patches_.straddles[patch] = 1;
+    if (proven.anywhere) patches_.crosses[patch] = 1;
   }
 
   const PlanFacts& facts_;
@@ -100,7 +100,7 @@ Status choose_one_by_one(const PatchNeeds& needs, const PlanRequest& request, Di
       beyond[k] = !needed.are_found();
       if (beyond[k]) needed = segments_beyond(needs, k, request);
       patches.segments[k] = needed.segments;
-      patches.straddles[k] = needed.anywhere;
+      patches.crosses[k] = needed.anywhere;
       patches.bounds[k] = rounded_up(needed.bound);
       if (!patches.angles.empty()) patches.angles[k] = rounded_up(needed.angle);
       if (!patches.pixels.empty()) patches.pixels[k] = rounded_up(needed.pixels);
@@ -127,7 +127,7 @@ Status choose_rates(const PlanFacts& facts, const PlanRequest& request, DividedP
   const std::size_t count = facts.needs.shapes().size();
   patches.segments.resize(count);
   patches.bounds.resize(count);
-  if (options.fewest || options.angle || options.camera) patches.straddles.resize(count);
+  if (options.fewest || options.angle || options.camera) patches.crosses.resize(count);
   if (options.angle) patches.angles.resize(count);
   if (options.camera) patches.pixels.resize(count);
   std::vector<std::uint8_t> beyond(count, 0);

@@ -6,7 +6,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Fills DividedPatches::segments, bounds, angles, pixels, straddles and beyond. Errors: invalid_argument (no patch keeps
+/// Fills DividedPatches::segments, bounds, angles, pixels, crosses and beyond. Errors: invalid_argument (no patch keeps
 /// the limits), cancelled.
 Status choose_rates(const PlanFacts& facts, const PlanRequest& request, DividedPatches& patches,
                     const Execution& execution);

@@ -99,7 +99,7 @@ FaceSides::FaceSides(const TrimRegion& region) {
 }
 
 void CutPatchMaker::make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut,
-                         TrimmedPatch limits, const std::array<Segments, 4>& borders, EdgeMask collapsed,
+                         TrimmedPatch limits, const std::array<Segments, 4>& borders, SideMask collapsed,
                          const ChordBound& chord, CutPatch& out) {
   const TrimRegion::Impl& impl = impl_of(region);
   const std::size_t a = cut.place / impl.count_v(), b = cut.place % impl.count_v();
@@ -167,7 +167,7 @@ bool CutPatchMaker::run(const TrimRegion& region, const FaceSides& sides, std::s
 }
 
 // Vertices that no triangle uses are left out, and so are triangles without an area at a collapsed border.
-void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) {
+void CutPatchMaker::number(SideMask collapsed, bool names_edges, CutPatch& out) {
   CutCells& cells = cutter_.cells();
   const std::size_t first = cutter_.loop_vertex_count(), count = cutter_.vertex_count();
   numbers_.assign(count, no_id);
@@ -176,7 +176,7 @@ void CutPatchMaker::number(EdgeMask collapsed, bool names_edges, CutPatch& out) 
   const auto add = [&](std::uint32_t vertex) {
     ParameterPoint at = cutter_.local(vertex);
     for (const Side side : all_sides) {
-      if (across_side(side, at) != is_far(side) || !collapsed.has(edge_of(side))) continue;
+      if (across_side(side, at) != is_far(side) || !collapsed.has(side)) continue;
       std::uint32_t& pole = out.poles[static_cast<std::size_t>(side)];
       if (pole != no_id) return pole;
       pole = static_cast<std::uint32_t>(out.vertices.size());

@@ -118,12 +118,12 @@ class CutPatchMaker {
   /// they do. The bound of slivers holds for either.
   /// If cancelled, it stops early: what it wrote is then of no use.
   void make(const TrimRegion& region, const FaceSides& sides, const PatchTrims::Cut& cut, TrimmedPatch limits,
-            const std::array<Segments, 4>& borders, EdgeMask collapsed, const ChordBound& chord, CutPatch& out);
+            const std::array<Segments, 4>& borders, SideMask collapsed, const ChordBound& chord, CutPatch& out);
 
  private:
   bool run(const TrimRegion& region, const FaceSides& sides, std::size_t place, const TrimmedPatch& limits,
            const std::array<Segments, 4>& borders, CutPatch& out);
-  void number(EdgeMask collapsed, bool names_edges, CutPatch& out);
+  void number(SideMask collapsed, bool names_edges, CutPatch& out);
   /// Lists the edges of triangles along loops, and counts them instead of the chords as they were laid.
   void list_loop_segments(CutPatch& out);
   /// Halves the triangles of the band that are too large. Returns false if there would be too many.

@@ -33,7 +33,7 @@ class PatchSides {
   /// - `across`: the coordinate that is constant on these lines; `lines` its values, `along` those of the other lines.
   /// - `starts_inside`: whether points that no piece encloses are kept.
   ///
-  /// Parity beside a line: of the pieces that end on the line and lie on that side of it, those count that end before.
+  /// Parity beside a line: the number of pieces on that side whose end on the line comes before the point.
   /// A piece along the line lies on neither side, so its ends are no points of the side.
   void set(std::span<const TrimPiece> pieces, double ParameterPoint::*across, std::span<const double> lines,
            std::span<const double> along, bool starts_inside);

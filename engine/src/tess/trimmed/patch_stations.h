@@ -1,8 +1,8 @@
 #pragma once
 // The stations of edges along the boundary of one patch, as plain data for the cutter.
 //
-// A station is a parameter of a shape's edge at which every face along the edge has a vertex. Stations are found edge by
-// edge before patches are cut: tess/closing/edge_stations.h.
+// A station is a parameter of a shape's edge at which every face along the edge has a vertex. Stations are found edge
+// by edge before patches are cut: tess/closing/edge_stations.h.
 
 #include <cstdint>
 #include <span>
@@ -14,7 +14,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// The stations along a run: pieces of a loop that follow each other along one edge, within one patch or along its side.
+/// The stations along a run: pieces of a loop that follow each other along one edge, within one patch or along its
+/// side.
 struct RunStations {
   std::uint32_t first = 0, end = 0;  ///< the pieces, of the face's region
   /// Within a patch: parameters of the caller's curve, growing, with the nearest stations before and after the run.

@@ -58,7 +58,8 @@ TrimPiece divide_at(TrimPiece& piece, double x) {
 
 }  // namespace
 
-// Parts of one piece between two stations are divided as they are; only parts that go on into other pieces become pieces.
+// Parts of one piece between two stations are divided as they are; only parts that go on into other pieces become
+// pieces.
 double PieceChords::append(std::span<const TrimPiece> chain, const CurveStations& stations, const ChordLimits& limits,
                            std::vector<ParameterPoint>& points, std::vector<double>& parameters) {
   double most = 0;

@@ -37,8 +37,8 @@ struct LaidChords {
   double sliver = 0;  ///< the largest
 };
 
-/// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over even parts of one piece,
-/// as few as the limits allow. Parts that need more are divided again.
+/// Lays chords along chains of monotone pieces: over as many pieces as the limits allow, or over even parts of one
+/// piece, as few as the limits allow. Parts that need more are divided again.
 ///
 /// Sliver bound, for a part of a chain with the ends a and b and control points q: by the cross products
 /// c = (b - a) x (q - a), each point between curve and chord lies at most d = max |c| / |b - a| from the line of the
@@ -48,8 +48,8 @@ struct LaidChords {
 class PieceChords {
  public:
   /// Appends the points of a chain but its start, and the parameters of the caller's curve there. `chain`: pieces that
-  /// follow each other. Returns the largest sliver bound, which is at most limits.sliver, unless a piece would need more
-  /// than 2^20 chords. The errors of the pieces count as a part of the sliver.
+  /// follow each other. Returns the largest sliver bound, which is at most limits.sliver, unless a piece would need
+  /// more than 2^20 chords. The errors of the pieces count as a part of the sliver.
   double append(std::span<const TrimPiece> chain, const ChordLimits& limits, std::vector<ParameterPoint>& points,
                 std::vector<double>& parameters);
   /// Appends the points of chords that also end at stations. All pieces are of one curve.

@@ -87,7 +87,7 @@ class ClosedWriter {
   }
   void put(std::size_t vertex, const Vec3& p) const {
     if (!out_.position.empty()) put_vector(out_.position, vertex, p);
-    if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
+    if (!out_.model_position.empty()) put_vector(out_.model_position, vertex, set_.origin + p);
   }
 
   const PatchSet::Impl& set_;
@@ -112,7 +112,7 @@ Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::o
   const auto move = [&](std::size_t begin, std::size_t end) {
     for (auto place = static_cast<std::uint32_t>(begin); place < end; ++place) {
       if (!out.position.empty()) writer.move(place, out.position, {});
-      if (!out.position_f64.empty()) writer.move(place, out.position_f64, set.origin);
+      if (!out.model_position.empty()) writer.move(place, out.model_position, set.origin);
       if (!out.normal.empty() && crease_angle) writer.join_normals(place);
     }
   };

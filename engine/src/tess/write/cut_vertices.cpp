@@ -57,7 +57,7 @@ class CutWriter {
     for (const ParameterPoint& at : cut.vertices) {
       const Vec3 p = points.at(at);
       if (!out_.position.empty()) put_vector(out_.position, vertex, p);
-      if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
+      if (!out_.model_position.empty()) put_vector(out_.model_position, vertex, set_.origin + p);
       if (!out_.normal.empty()) put_vector(out_.normal, vertex, points.normal(at));
       if (!out_.parameter.empty()) {
         out_.parameter.at(vertex, 0) = static_cast<float>(at.u);

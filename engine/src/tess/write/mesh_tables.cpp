@@ -237,9 +237,9 @@ void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
 /// Uses the common tables, or a copy of them to which it adds what they lack.
 class TableMaker {
  public:
-  TableMaker(SharedSlot<MeshTables>& kept, std::size_t patches, bool with_points)
+  TableMaker(SharedSlot<void>& kept, std::size_t patches, bool with_points)
       : kept_(kept),
-        common_(kept.load()),
+        common_(std::static_pointer_cast<const MeshTables>(kept.load())),
         with_points_(with_points),
         seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
     if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables());
@@ -253,7 +253,7 @@ class TableMaker {
       const MeshTables::Border wanted{.degree = degree_along(side, group),
                                       .by_points = by_points,
                                       .backward = is_backward(side),
-                                      .collapsed = division.collapsed.has(edge_of(side)),
+                                      .collapsed = division.collapsed.has(side),
                                       .inner = division.inner_along(side),
                                       .border = division.border[static_cast<std::size_t>(side)]};
       if (MeshTables::is_common(wanted.border, wanted.inner, wanted.collapsed)) {
@@ -291,7 +291,7 @@ class TableMaker {
     own_->add(wanted);
   }
 
-  SharedSlot<MeshTables>& kept_;
+  SharedSlot<void>& kept_;
   std::shared_ptr<const MeshTables> common_;
   bool with_points_;
   std::size_t common_bytes_;
@@ -301,7 +301,7 @@ class TableMaker {
 
 std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std::span<const Division> divisions,
                                                  bool with_points) {
-  TableMaker maker(set.mesh_tables[with_points ? 1 : 0], divisions.size(), with_points);
+  TableMaker maker(set.plan_tables[with_points ? 1 : 0], divisions.size(), with_points);
   for (std::size_t k = 0; k < divisions.size(); ++k) maker.add(set.group_of_block(set.slots[k].block), divisions[k]);
   return maker.take();
 }

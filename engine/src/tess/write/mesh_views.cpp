@@ -49,18 +49,18 @@ ViewChecks vertex_checks(const MeshViews& out, const MeshCapacity& wanted) {
   ViewChecks checks(wanted.vertices);
   add_wanted(checks, "position", out.position);
   add_wanted(checks, "normal", out.normal);
-  add_wanted(checks, "position_f64", out.position_f64);
+  add_wanted(checks, "model_position", out.model_position);
   return checks;
 }
 
 Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
   // An array without elements may have no memory, so a mesh without vertices has no view that is not empty.
-  if (f64 && out.position_f64.empty() && wanted.vertices > 0)
-    return invalid("the position_f64 view is empty, a plan with positions in double requires it");
-  if (!f64 && !out.position_f64.empty())
-    return invalid("the position_f64 view must be empty: the plan has no positions in double");
+  if (f64 && out.model_position.empty() && wanted.vertices > 0)
+    return invalid("the model_position view is empty, a plan with positions in double requires it");
+  if (!f64 && !out.model_position.empty())
+    return invalid("the model_position view must be empty: the plan has no positions in double");
   if (!f64 && out.position.empty() && wanted.vertices > 0) return invalid("the position view is empty, it is required");
-  if (Status status = check_view("position_f64", out.position_f64, wanted.vertices); !status.ok()) return status;
+  if (Status status = check_view("model_position", out.model_position, wanted.vertices); !status.ok()) return status;
   if (Status status = check_view("position", out.position, wanted.vertices); !status.ok()) return status;
   return check_view("normal", out.normal, wanted.vertices);
 }
@@ -90,7 +90,7 @@ Status check_updated_views(const MeshViews& out, const MeshCapacity& wanted, boo
                                             std::to_string(wanted.vertices) + ": it is that of another topology"};
   };
   for (const Status& status : {check_count("position", out.position.size), check_count("normal", out.normal.size),
-                               check_count("position_f64", out.position_f64.size)})
+                               check_count("model_position", out.model_position.size)})
     if (!status.ok()) return status;
   return vertex_checks(out, wanted).status();
 }
@@ -121,27 +121,11 @@ Status check_views(const MeshViews& out, const MeshCapacity& wanted, bool f64) {
   return checks.status();
 }
 
-Status check_count(const PatchSet& set, std::size_t planned) {
-  if (set.patch_count() == planned) return {};
-  return {StatusCode::stale,
-          "the plan is for " + std::to_string(planned) + " patches, the set has " + std::to_string(set.patch_count())};
-}
-
-Status check_followed(const PatchSet& set, std::size_t planned, std::uint64_t revision) {
-  if (Status status = check_count(set, planned); !status.ok()) return status;
-  if (!set.blocks().float_bernstein) return no_float_blocks();
-  return set.revision() < revision ? other_set() : Status();
-}
-
-Status other_set() { return {StatusCode::stale, "the plan follows another set: make a new plan for this one"}; }
-
 Status no_float_blocks() {
   return {StatusCode::unsupported, "a tessellation needs float Bernstein blocks, the set has none"};
 }
 
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
-  if (Status status = check_count(set, planned.size()); !status.ok()) return status;
-  if (!set.blocks().float_bernstein) return no_float_blocks();
   LeastIndex changed;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -152,10 +136,9 @@ Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned) {
   };
   if (Status status = parallel_for(planned.size(), compared_per_task, {}, compare); !status.ok()) return status;
   if (!changed.found()) return {};
-  return {
-      StatusCode::stale,
-      "patch " + std::to_string(changed.index()) + " has other degrees or collapsed edges than when the plan was made",
-      static_cast<std::ptrdiff_t>(changed.index())};
+  return {StatusCode::stale,
+          "patch " + std::to_string(changed.index()) + " has other collapsed sides than when the plan was made",
+          static_cast<std::ptrdiff_t>(changed.index())};
 }
 
 }}  // namespace tessera::abi_0_1

@@ -23,17 +23,10 @@ Status check_updated_views(const MeshViews& out, const MeshCapacity& wanted, boo
 /// Checks that there are no views of quads. Errors: invalid_argument.
 Status check_no_quads(const MeshViews& out);
 
-/// Checks that a set has as many patches as a plan. Errors: stale.
-Status check_count(const PatchSet& set, std::size_t planned);
-/// Checks that a set is the one that a plan of `planned` patches follows, at its revision or a later one. Errors:
-/// stale, unsupported.
-Status check_followed(const PatchSet& set, std::size_t planned, std::uint64_t revision);
-/// The error of another set than the one that a plan follows: stale.
-Status other_set();
 /// The error of a set without float Bernstein blocks: unsupported.
 Status no_float_blocks();
-/// Checks that a set has the blocks that meshes are made from, and patches of the shapes that a plan was made for.
-/// Errors: unsupported, stale (index = the first patch of another shape).
+/// Checks that the patches of a set still have the shapes that a plan was made for. Errors: stale (index = the first
+/// patch of another shape).
 Status check_shapes(const PatchSet& set, std::span<const PatchShape> planned);
 
 }}  // namespace tessera::abi_0_1

@@ -85,7 +85,7 @@ void PatchWriter::write_f64(std::size_t k) const {
   std::size_t vertex = plan_.first_vertex(k), place = 0;  // numbers in the mesh, and among all vertices of the division
   const auto put = [&](const Vec3& p) {
     if (!out_.position.empty()) put_vector(out_.position, vertex, p);
-    if (!out_.position_f64.empty()) put_vector(out_.position_f64, vertex, set_.origin + p);
+    if (!out_.model_position.empty()) put_vector(out_.model_position, vertex, set_.origin + p);
     if (normals)
       put_vector(out_.normal, vertex,
                  unit_normal(patch, division.parameters(place).u, division.parameters(place).v).direction);
@@ -166,7 +166,7 @@ void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const 
     const auto s = static_cast<std::size_t>(side);
     kernel::MeshBorder& border = job.border[s];
     border.weights = tables_.border_weights(degree_along(side, group), division.along_ring(side));
-    border.is_point = division.collapsed.has(edge_of(side));
+    border.is_point = division.collapsed.has(side);
     if (!border.is_point && !group.rational) continue;  // other borders use neither start nor scale
     vertices.starts[s] = start_of(set_.patches[k], set_.origin, side);
     border.start = vertices.starts[s].data();
@@ -224,8 +224,8 @@ void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32
   std::uint32_t ring = job.ring;
   for (const Side side : all_sides) {
     const auto s = static_cast<std::size_t>(side);
-    const MeshTables::Strip strip = tables_.strip(division.along_ring(side), division.inner_along_ring(side),
-                                                  division.collapsed.has(edge_of(side)));
+    const MeshTables::Strip strip =
+        tables_.strip(division.along_ring(side), division.inner_along_ring(side), division.collapsed.has(side));
     job.strip[s] = {strip.codes, strip.count, ring, first + start[s], step[s]};
     ring += number(division.border[s].rate());
   }

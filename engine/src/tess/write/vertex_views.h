@@ -22,7 +22,7 @@ void copy(const View3<T>& vectors, std::size_t from, std::size_t to) {
 /// Copies a vertex's positions, of either precision.
 inline void copy_positions(const MeshViews& out, std::size_t from, std::size_t to) {
   if (!out.position.empty()) copy(out.position, from, to);
-  if (!out.position_f64.empty()) copy(out.position_f64, from, to);
+  if (!out.model_position.empty()) copy(out.model_position, from, to);
 }
 
 }}  // namespace tessera::abi_0_1

@@ -27,7 +27,7 @@ Status write_pole(const VertexCopies::Corner& pole, const CertifiedPlan& plan, c
   for (int k = 1; k < to.rate(); ++k) copy_positions(out, from(0), to(k));
   if (out.normal.empty() || !has_own_normals) return {};
   const Side side = all_sides[pole.to % 4];
-  const bool is_point = set.collapsed[pole.to / 4].has(edge_of(side));
+  const bool is_point = set.collapsed[pole.to / 4].has(side);
   const Result<BezierPatch> patch =
       is_point ? Result<BezierPatch>(set.patches[pole.to / 4]) : with_pole(set.patches[pole.to / 4], side);
   if (!patch) return patch.status();

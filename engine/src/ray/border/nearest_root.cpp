@@ -1,4 +1,4 @@
-#include "ray/seam/nearest_root.h"
+#include "ray/border/nearest_root.h"
 
 #include "ray/net/bounded_step.h"
 #include "ray/net/seen_point.h"

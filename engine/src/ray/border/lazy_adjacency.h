@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "ray/seam/adjacency.h"
+#include "ray/border/adjacency.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

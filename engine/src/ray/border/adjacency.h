@@ -1,5 +1,5 @@
 #pragma once
-// The patches that share a border, so that a root that lies just across a seam is searched on the other side.
+// The patches that share a border, so that a root that lies just across a border is searched on the other side.
 
 #include <array>
 #include <cstddef>
@@ -13,12 +13,12 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// The four edges in a fixed order, for indices.
-inline constexpr std::array<Edge, 4> all_edges{Edge::u0, Edge::u1, Edge::v0, Edge::v1};
+inline constexpr std::array<Side, 4> link_sides{Side::u0, Side::u1, Side::v0, Side::v1};
 
 /// The other side of an edge.
 struct EdgeLink {
   std::uint32_t patch = no_id;
-  std::uint8_t edge = 0;  ///< index into all_edges
+  std::uint8_t edge = 0;  ///< index into link_sides
   bool reversed = false;  ///< the two run along the edge in opposite directions
   bool exists() const { return patch != no_id; }
 };

@@ -1,4 +1,4 @@
-#include "ray/seam/distinct_roots.h"
+#include "ray/border/distinct_roots.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "ray/seam/root_fan.h"
+#include "ray/border/root_fan.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -1,4 +1,4 @@
-#include "ray/seam/fold_roots.h"
+#include "ray/border/fold_roots.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "ray/border/root_fan.h"
 #include "ray/net/seen_point.h"
-#include "ray/seam/root_fan.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -38,7 +38,7 @@ class SeenCorner {
   }
 
  private:
-  /// 1 or -1 if the place reaches the edge, an index into all_edges, or the next one.
+  /// 1 or -1 if the place reaches the edge, an index into link_sides, or the next one.
   static double inward(const LeafRoot& place, int edge, double apart) {
     return reaches_edge(place, edge, apart) ? 1 : reaches_edge(place, edge + 1, apart) ? -1 : 0;
   }

@@ -1,9 +1,9 @@
 #pragma once
 // Secondary rays: decides whether a root of a patch stands for the point where the ray starts.
 
+#include "ray/border/adjacency.h"
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
-#include "ray/seam/adjacency.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

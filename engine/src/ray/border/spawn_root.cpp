@@ -1,12 +1,12 @@
-#include "ray/seam/spawn_root.h"
+#include "ray/border/spawn_root.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "ray/border/nearest_root.h"
+#include "ray/border/root_fan.h"
 #include "ray/line/first_order.h"
-#include "ray/seam/nearest_root.h"
-#include "ray/seam/root_fan.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

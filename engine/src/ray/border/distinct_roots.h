@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "ray/border/adjacency.h"
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
-#include "ray/seam/adjacency.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -8,7 +8,7 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// Returns the edges whose control points, `[i][j]`, all coincide by ==.
-inline EdgeMask collapsed_edges(int degree_u, int degree_v, std::span<const Vec3> points) {
+inline SideMask collapsed_sides(int degree_u, int degree_v, std::span<const Vec3> points) {
   const int m = degree_u, n = degree_v;
   const auto point = [&](int i, int j) -> const Vec3& { return points[static_cast<std::size_t>(i * (n + 1) + j)]; };
   const auto coincide = [&](int i, int j, int step_i, int step_j, int steps) {
@@ -16,11 +16,11 @@ inline EdgeMask collapsed_edges(int degree_u, int degree_v, std::span<const Vec3
       if (point(i + k * step_i, j + k * step_j) != point(i, j)) return false;
     return true;
   };
-  EdgeMask edges;
-  if (coincide(0, 0, 0, 1, n)) edges.add(Edge::u0);
-  if (coincide(m, 0, 0, 1, n)) edges.add(Edge::u1);
-  if (coincide(0, 0, 1, 0, m)) edges.add(Edge::v0);
-  if (coincide(0, n, 1, 0, m)) edges.add(Edge::v1);
+  SideMask edges;
+  if (coincide(0, 0, 0, 1, n)) edges.add(Side::u0);
+  if (coincide(m, 0, 0, 1, n)) edges.add(Side::u1);
+  if (coincide(0, 0, 1, 0, m)) edges.add(Side::v0);
+  if (coincide(0, n, 1, 0, m)) edges.add(Side::v1);
   return edges;
 }
 

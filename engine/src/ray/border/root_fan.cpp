@@ -1,4 +1,4 @@
-#include "ray/seam/root_fan.h"
+#include "ray/border/root_fan.h"
 
 #include <algorithm>
 

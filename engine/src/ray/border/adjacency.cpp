@@ -1,4 +1,4 @@
-#include "ray/seam/adjacency.h"
+#include "ray/border/adjacency.h"
 
 #include <algorithm>
 #include <bit>
@@ -58,9 +58,9 @@ Adjacency::Adjacency(const SetView& set) : links_(set.patch_count()) {
   std::vector<Entry> entries;
   entries.reserve(4 * set.patch_count());
   for (std::uint32_t k = 0; k < set.patch_count(); ++k) {
-    const EdgeMask collapsed = set.collapsed_edges(k);
+    const SideMask collapsed = set.collapsed_sides(k);
     for (std::uint8_t edge = 0; edge < 4; ++edge) {
-      if (!collapsed.has(all_edges[edge])) entries.push_back({hash({&set.patch(k), edge}), k, edge});
+      if (!collapsed.has(link_sides[edge])) entries.push_back({hash({&set.patch(k), edge}), k, edge});
     }
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "ray/seam/root_places.h"
+#include "ray/border/root_places.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -3,13 +3,13 @@
 
 #include <cmath>
 
+#include "ray/border/adjacency.h"
 #include "ray/line/ray_query.h"
 #include "ray/line/set_view.h"
-#include "ray/seam/adjacency.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Functions along an edge, an index into all_edges: of the parameter that varies there.
+/// Functions along an edge, an index into link_sides: of the parameter that varies there.
 inline double along_edge(const LeafRoot& root, int edge) { return edge < 2 ? root.v : root.u; }
 inline double reach_along(const LeafRoot& root, int edge, double apart) {
   return edge < 2 ? reach_v(root, apart) : reach_u(root, apart);
@@ -22,7 +22,7 @@ inline bool reaches_edge(const LeafRoot& root, int edge, double apart) {
 }
 
 inline bool is_collapsed(const SetView& set, std::uint32_t patch, int edge) {
-  return set.collapsed_edges(patch).has(all_edges[static_cast<std::size_t>(edge)]);
+  return set.collapsed_sides(patch).has(link_sides[static_cast<std::size_t>(edge)]);
 }
 /// Returns whether the edge is a pole, and as near as that.
 inline bool reaches_pole(const SetView& set, const LeafRoot& root, int edge, double apart) {
