@@ -18,6 +18,22 @@ namespace tessera::house { namespace {
 // "About 400 lines at the most": a source file that needs more holds more than one idea. Guides may be longer.
 constexpr std::ptrdiff_t longest_file = 400;
 
+// The formatter breaks code at 120 columns and leaves comments as they are.
+TEST(House, NoCommentIsTooWide) {
+  std::size_t checked = 0;
+  for (const char* folder : {"engine", "bench", "tools", "tests"}) {
+    for (const std::string& path : files_under(folder)) {
+      if (!path.ends_with(".h") && !path.ends_with(".cpp")) continue;
+      ++checked;
+      std::istringstream text(read_text(path));
+      std::size_t at = 0;
+      for (std::string line; std::getline(text, line);)
+        EXPECT_FALSE(++at && line.size() > 120 && line.find_first_not_of(' ') == line.find("//")) << path << ":" << at;
+    }
+  }
+  EXPECT_GT(checked, 800u) << "the search finds too few files";
+}
+
 TEST(House, NoFileIsTooLong) {
   std::size_t checked = 0;
   for (const char* folder : {"engine", "bench", "tools"}) {
