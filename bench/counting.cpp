@@ -59,6 +59,8 @@ constexpr std::string_view cases[] = {
     "read.json/bicubic/3/1MB",
     "read.obj/bspline/3/1MB",
     "read.rib/bicubic/3/1MB",
+    "closed.mesh/wavy.faces64/3/0.02",
+    "closed.mesh/plate8x8/-/1e-3",
 };
 
 }  // namespace
