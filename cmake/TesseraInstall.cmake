@@ -56,7 +56,7 @@ if(TESSERA_BUILD_IO)
   tessera_install_pkg_config(tessera-io tessera_io_library "Tessera's readers of surfaces and writers of meshes" ON tessera
     REQUIRES muparser tinygltf ${zlib_package})
 else()
-  list(APPEND left_out PATTERN "io.h" EXCLUDE PATTERN "files.h" EXCLUDE PATTERN "cad.h" EXCLUDE PATTERN "surface_file.h" EXCLUDE PATTERN "mesh_pieces.h" EXCLUDE)
+  list(APPEND left_out PATTERN "io.h" EXCLUDE PATTERN "cad.h" EXCLUDE PATTERN "surface_file.h" EXCLUDE)
 endif()
 if(TESSERA_BUILD_PARTS)
   tessera_install_component(parts tessera_parts_library)

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tessera/files.h"
+#include "io/file/output_file.h"
 
 namespace tessera::bench {
 

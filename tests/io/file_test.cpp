@@ -1,6 +1,7 @@
 // Reads whole files; writes files that appear whole or not at all.
 
 #include "io/file/file.h"
+#include "io/file/output_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -12,7 +13,6 @@
 
 #include "support/privileges.h"
 #include "support/scratch_folder.h"
-#include "tessera/files.h"
 #include "tessera/io.h"
 
 namespace tessera { namespace {

@@ -1,7 +1,5 @@
 // Files that are written piece by piece: a .ply has the bytes of the whole mesh's, a .pvtp names its pieces.
 
-#include "tessera/mesh_pieces.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -9,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "io/mesh/mesh_pieces.h"
 #include "io/mesh_samples.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"

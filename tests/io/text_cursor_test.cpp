@@ -1,7 +1,5 @@
 // Tokens, numbers and the lines of errors.
 
-#include "tessera/files.h"
-
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -9,6 +7,8 @@
 #include <cstring>
 #include <limits>
 #include <random>
+
+#include "io/file/text_cursor.h"
 
 namespace tessera { namespace {
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "io/file/output_file.h"
+#include "io/file/text_cursor.h"
 #include "robustness/memory_failure.h"
 #include "robustness/scene.h"
 #include "support/borders.h"
@@ -25,7 +27,6 @@
 #ifdef TESSERA_HAS_IO
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
-#include "tessera/files.h"
 #include "tessera/io.h"
 #endif
 

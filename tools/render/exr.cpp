@@ -9,8 +9,8 @@
 #include <cstring>
 #include <string>
 
+#include "io/file/output_file.h"
 #include "render/hit_image.h"
-#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

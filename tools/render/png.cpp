@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/file/output_file.h"
 #include "render/render.h"
-#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "io/file/output_file.h"
 #include "render/up_axis.h"
 #include "tessera/colour.h"
 #include "tessera/execution.h"
-#include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"

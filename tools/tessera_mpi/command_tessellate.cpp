@@ -9,6 +9,8 @@
 #include "commands/commands.h"
 #include "console/output.h"
 #include "console/report.h"
+#include "io/mesh/mesh_pieces.h"
+#include "mpi/mpi_ply.h"
 #include "stages/write.h"
 #include "tessera/io.h"
 #include "tessera/part_mesh.h"

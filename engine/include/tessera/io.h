@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/files.h"
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
@@ -135,7 +134,7 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
 /// Returns a bound of the distance between a vertex of the mesh (in double, if it has positions in double) and that of
 /// the file that write_mesh() makes of it: the mesh of the file keeps Tessellation::bound() plus this. It is 0 for
 /// glTF, whose positions are relative to the origin, if they are in float. 2^-24 of the largest coordinate comes from
-/// rounding to float. Errors: none. Other extensions count as files of floats, like those of mesh_pieces.h.
+/// rounding to float. Errors: none. Other extensions count as files of floats.
 double file_rounding(const Mesh& mesh, const std::filesystem::path& path);
 /// Returns file_rounding() of any mesh with this origin, whose positions relative to it have |x|, |y| and |z| of at
 /// most `reach`. `has_doubles`: whether it has positions in double.
@@ -174,7 +173,7 @@ struct MeshReadOptions {
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 /// @name Parts of reading and writing
-/// For programs that check and open their output before they compute its content.
+/// For programs that check their output before they compute its content.
 /// @{
 
 /// Returns the extension of `path` with letters from A to Z made small: ".obj", or nothing if there is none. Errors:
@@ -184,16 +183,6 @@ std::string lower_extension(const std::filesystem::path& path);
 Status check_mesh_format(const std::filesystem::path& path);
 /// Checks that write_model() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
 Status check_model_format(const std::filesystem::path& path);
-/// Writes the mesh to a file that was created for `path`, and leaves commit() to the caller, which reports failed
-/// writes. Errors: unsupported, and those of a mesh that no file can hold.
-Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFile& out);
-/// Writes the assembly to a file that was created for `path`, and leaves commit() to the caller. Errors: as
-/// write_assembly(), but for io_error.
-Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path, OutputFile& out);
-/// Writes the model to a file that was created for `path`, and leaves commit() to the caller, which reports failed
-/// writes. Errors: as write_model(), but for io_error.
-Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit,
-                                 OutputFile& out);
 /// Reads the bytes of a file; of a pipe or a terminal up to its end, at most 1 GiB. Errors: io_error (missing, a
 /// directory, no permission, a failed read), parse_error (no bytes), out_of_memory (a file larger than the machine's
 /// memory). Messages begin with the path.

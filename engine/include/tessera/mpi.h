@@ -10,11 +10,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 
-#include "tessera/mesh.h"
-#include "tessera/mesh_pieces.h"
 #include "tessera/status.h"
 #include "tessera/transport.h"
 
@@ -52,14 +49,6 @@ class SharedCounter {
   explicit SharedCounter(std::unique_ptr<Window> window);
   std::unique_ptr<Window> window_;
 };
-
-/// Writes this rank's piece of a .ply file by MPI's own file calls; rank 0 writes the header too. A meeting of all
-/// ranks. The file must exist on a file system that all see. It is whole once all ranks have succeeded: let them agree
-/// (Transport::agree()), and give it its name only then (OutputFile).
-///
-/// Errors, of this rank: those of PlyLayout::check(); io_error (MPI's own; a full disk). Memory: 8 MiB.
-Status write_ply_piece(MPI_Comm communicator, const std::filesystem::path& file, const PlyLayout& layout,
-                       const Mesh& piece, const PiecePlace& place);
 
 }}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -48,9 +48,7 @@
 #endif
 #if __has_include("tessera/io.h")
 #include "tessera/cad.h"
-#include "tessera/files.h"
 #include "tessera/io.h"
-#include "tessera/mesh_pieces.h"
 #include "tessera/surface_file.h"
 #endif
 #if __has_include("tessera/transport.h")

@@ -1,4 +1,4 @@
-// Writes one .ply file by all ranks.
+#include "mpi/mpi_ply.h"
 
 #include <algorithm>
 #include <string>
@@ -6,7 +6,6 @@
 
 #include "mpi/mpi_call.h"
 #include "tessera/guard.h"
-#include "tessera/mpi.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

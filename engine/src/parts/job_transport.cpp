@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "base/text.h"
+#include "io/file/output_file.h"
 #include "parts/checksum.h"
 #include "parts/message_file.h"
-#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/transport.h"

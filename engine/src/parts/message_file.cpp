@@ -1,4 +1,5 @@
 #include "parts/message_file.h"
+#include "io/file/output_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -14,7 +15,6 @@
 #include "io/file/descriptor.h"
 #include "io/file/file.h"
 #include "parts/checksum.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

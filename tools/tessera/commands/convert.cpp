@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "console/console.h"
 #include "console/output.h"
+#include "io/format/output_formats.h"
 #include "line/arguments.h"
 #include "stages/write.h"
 #include "tessera/io.h"

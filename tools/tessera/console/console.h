@@ -9,7 +9,6 @@
 
 #include "console/json.h"
 #include "tessera/execution.h"
-#include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 

@@ -1,4 +1,5 @@
 #include "console/memory.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,7 +9,6 @@
 
 #include "console/console.h"
 #include "line/command_line.h"
-#include "tessera/files.h"
 
 namespace tessera::cli {
 namespace {

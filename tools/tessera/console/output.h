@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/output_file.h"
 #include "line/command_line.h"
-#include "tessera/files.h"
 #include "tessera/status.h"
 
 namespace tessera::cli {

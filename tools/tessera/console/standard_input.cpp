@@ -1,4 +1,5 @@
 #include "console/standard_input.h"
+#include "io/file/output_file.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -7,7 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include "tessera/files.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {

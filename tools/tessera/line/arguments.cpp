@@ -1,4 +1,5 @@
 #include "line/arguments.h"
+#include "io/file/text_cursor.h"
 
 #include <sys/stat.h>
 
@@ -7,8 +8,6 @@
 #include <map>
 #include <system_error>
 #include <utility>
-
-#include "tessera/files.h"
 
 namespace tessera::cli {
 namespace {

@@ -1,4 +1,5 @@
 #include "line/command_line.h"
+#include "io/file/text_cursor.h"
 
 #include <CLI/CLI.hpp>
 
@@ -8,7 +9,6 @@
 
 #include "line/arguments.h"
 #include "line/suggestions.h"
-#include "tessera/files.h"
 
 namespace tessera::cli {
 namespace {

@@ -1,4 +1,5 @@
 #include "stages/mesh_options.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "stages/pieces.h"
+#include "io/mesh/mesh_pieces.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -14,7 +15,6 @@
 #include "console/output.h"
 #include "console/progress.h"
 #include "tessera/io.h"
-#include "tessera/mesh_pieces.h"
 #include "tessera/part_mesh.h"
 #include "tessera/surface_file.h"
 #include "tessera/transport.h"

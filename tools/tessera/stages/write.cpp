@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "io/format/output_formats.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {

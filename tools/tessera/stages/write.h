@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "io/file/output_file.h"
 #include "stages/mesh.h"
 
 namespace tessera::cli {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 #include "tessera/model.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"

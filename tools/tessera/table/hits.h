@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "tessera/files.h"
+#include "io/file/output_file.h"
 #include "tessera/model.h"
 #include "tessera/ray_scene.h"
 

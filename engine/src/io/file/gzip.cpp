@@ -1,4 +1,5 @@
 #include "io/file/gzip.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <limits>

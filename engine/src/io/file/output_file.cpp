@@ -1,4 +1,3 @@
-#include "tessera/files.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -17,6 +16,7 @@
 
 #include "io/file/descriptor.h"
 #include "io/file/file.h"
+#include "io/file/output_file.h"
 #include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {

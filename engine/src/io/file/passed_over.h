@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {

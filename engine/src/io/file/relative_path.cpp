@@ -1,10 +1,10 @@
 #include "io/file/relative_path.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <charconv>
 #include <system_error>
 
-#include "tessera/files.h"
 #include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "io/file/descriptor.h"
-#include "tessera/files.h"
+#include "io/file/output_file.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {

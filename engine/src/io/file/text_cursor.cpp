@@ -1,8 +1,9 @@
-#include "tessera/files.h"
 
 #include <algorithm>
 #include <cmath>
 #include <system_error>
+
+#include "io/file/text_cursor.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -8,6 +8,7 @@
 #include "io/cad/cad_reader.h"
 #include "io/file/file.h"
 #include "io/file/gzip.h"
+#include "io/format/output_formats.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/valid_mesh.h"
 #include "io/spline/model_formats.h"

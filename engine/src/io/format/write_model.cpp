@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "io/format/output_formats.h"
 #include "io/spline/model_formats.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"

@@ -1,4 +1,5 @@
 #include "io/json/expression.h"
+#include "io/file/text_cursor.h"
 
 #include <muParser.h>
 
@@ -13,7 +14,6 @@
 
 #include "base/text.h"
 #include "parallel/workspaces.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

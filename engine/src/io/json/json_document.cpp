@@ -1,4 +1,5 @@
 #include "io/json/json_document.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <iterator>
@@ -6,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "io/file/text_cursor.h"
 #include "io/json/expression.h"
 #include "io/json/json_kinds.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -1,10 +1,10 @@
 #include "io/json/json_reader.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "io/json/expression.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -1,4 +1,5 @@
 #include "io/mesh/gltf_numbers.h"
+#include "io/file/text_cursor.h"
 
 #include <tiny_gltf.h>
 
@@ -10,7 +11,6 @@
 
 #include "io/file/relative_path.h"
 #include "io/json/json_reader.h"
-#include "tessera/files.h"
 #include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "io/file/text_cursor.h"
 #include "io/json/json_reader.h"
 #include "io/mesh/gltf_numbers.h"
 #include "io/mesh/mesh_formats.h"

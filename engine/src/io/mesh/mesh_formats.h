@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "tessera/files.h"
+#include "io/file/output_file.h"
 #include "tessera/io.h"
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"

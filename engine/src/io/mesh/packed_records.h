@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/function_ref.h"
-#include "tessera/files.h"
+#include "io/file/output_file.h"
 #include "tessera/geometry.h"
 
 namespace tessera { inline namespace abi_0_1 {

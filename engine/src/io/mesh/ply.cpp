@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
+#include "io/file/text_cursor.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/ply_header.h"
 #include "io/mesh/polygon.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -1,10 +1,9 @@
 #include "io/mesh/ply_header.h"
+#include "io/file/text_cursor.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
-
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

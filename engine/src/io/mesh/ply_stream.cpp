@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "io/file/spool_file.h"
+#include "io/mesh/mesh_pieces.h"
 #include "io/mesh/packed_records.h"
 #include "io/mesh/valid_mesh.h"
 #include "tessera/guard.h"
-#include "tessera/mesh_pieces.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

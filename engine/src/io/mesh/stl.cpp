@@ -10,10 +10,11 @@
 #include <limits>
 #include <string>
 
+#include "io/file/output_file.h"
+#include "io/file/text_cursor.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/packed_records.h"
 #include "io/mesh/vertex_welder.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

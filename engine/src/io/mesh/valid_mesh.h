@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "io/mesh/mesh_pieces.h"
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"
-#include "tessera/mesh_pieces.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {

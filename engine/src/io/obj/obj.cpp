@@ -4,12 +4,13 @@
 #include <limits>
 #include <string>
 
+#include "io/file/output_file.h"
+#include "io/file/text_cursor.h"
 #include "io/mesh/file_rounding.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon.h"
 #include "io/obj/obj_index.h"
 #include "io/obj/obj_name.h"
-#include "tessera/files.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

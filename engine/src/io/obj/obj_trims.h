@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "io/file/text_cursor.h"
 #include "tessera/curve.h"
-#include "tessera/files.h"
 #include "tessera/model.h"
 
 namespace tessera { inline namespace abi_0_1 {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/text_cursor.h"
 #include "io/rib/rib_mesh.h"
 #include "tessera/detail/shared.h"
-#include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
 

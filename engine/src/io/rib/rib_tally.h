@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "io/file/passed_over.h"
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

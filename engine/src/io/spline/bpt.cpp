@@ -6,9 +6,9 @@
 #include <string>
 
 #include "base/text.h"
+#include "io/file/text_cursor.h"
 #include "io/spline/item_reader.h"
 #include "surface/net/patch_pool.h"
-#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"

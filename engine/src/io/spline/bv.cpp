@@ -8,8 +8,8 @@
 
 #include "io/file/make_room.h"
 #include "io/file/passed_over.h"
+#include "io/file/text_cursor.h"
 #include "surface/net/patch_pool.h"
-#include "tessera/files.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 #include "tessera/status.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "io/file/text_cursor.h"
 #include "tessera/curve.h"
-#include "tessera/files.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 #include "tessera/surface.h"

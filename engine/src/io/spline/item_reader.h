@@ -13,7 +13,7 @@
 
 #include "base/function_ref.h"
 #include "io/file/passed_over.h"
-#include "tessera/files.h"
+#include "io/file/text_cursor.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 

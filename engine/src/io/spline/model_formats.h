@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tessera/files.h"
+#include "io/file/output_file.h"
 #include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {

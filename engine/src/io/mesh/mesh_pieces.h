@@ -1,5 +1,5 @@
 #pragma once
-// Meshes larger than memory: files that are written piece by piece.
+// Meshes larger than memory: files that are written piece by piece. For the project's own tools.
 //
 // Threads: any number of calls at once on different objects or on const ones; records are packed in the caller's TBB
 // arena.
@@ -10,11 +10,11 @@
 #include <memory>
 #include <string>
 
-#include "tessera/files.h"
+#include "base/internal_export.h"
+#include "io/file/output_file.h"
 #include "tessera/mesh.h"
 #include "tessera/status.h"
 
-#pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
 
 /// The sizes of a mesh, all pieces together, and the attributes that every piece has.
@@ -60,19 +60,19 @@ class PlyLayout {
   const MeshTotals& totals() const { return totals_; }  ///< as make() was given them
   /// The bytes before the first record.
   const std::string& header() const { return header_; }
-  std::uint64_t file_bytes() const;  ///< of the whole file
+  TESSERA_INTERNAL_EXPORT std::uint64_t file_bytes() const;  ///< of the whole file
   /// Bytes of one record of a kind.
-  std::size_t record_bytes(MeshRecord kind) const;
+  TESSERA_INTERNAL_EXPORT std::size_t record_bytes(MeshRecord kind) const;
   /// Where a piece's records of a kind stand in the file.
-  ByteRange range(const Mesh& piece, const PiecePlace& place, MeshRecord kind) const;
+  TESSERA_INTERNAL_EXPORT ByteRange range(const Mesh& piece, const PiecePlace& place, MeshRecord kind) const;
   /// Checks that a piece has a valid mesh, the attributes of the totals, and a place within them. A piece without
   /// vertices is valid. Errors: count_mismatch, invalid_argument, non_finite as for write_mesh(); unsupported (patches
   /// above 4,294,967,295).
-  Status check(const Mesh& piece, const PiecePlace& place) const;
+  TESSERA_INTERNAL_EXPORT Status check(const Mesh& piece, const PiecePlace& place) const;
   /// Writes the piece's records `first` to `last` - 1 of a kind to `to`, which has room for them. Requires a piece that
   /// check() accepts, and records that it has.
-  void pack(const Mesh& piece, const PiecePlace& place, MeshRecord kind, std::size_t first, std::size_t last,
-            char* to) const;
+  TESSERA_INTERNAL_EXPORT void pack(const Mesh& piece, const PiecePlace& place, MeshRecord kind, std::size_t first,
+                                    std::size_t last, char* to) const;
 
  private:
   explicit PlyLayout(const MeshTotals& totals);
@@ -123,7 +123,7 @@ class PlyStream {
   Status commit();
 
  private:
-  class [[gnu::visibility("hidden")]] Content;
+  class Content;
   explicit PlyStream(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
 };
@@ -147,4 +147,3 @@ Status write_pvtp(const MeshTotals& totals, const std::filesystem::path& index, 
 /// @}
 
 }}  // namespace tessera::abi_0_1
-#pragma GCC visibility pop
