@@ -147,7 +147,7 @@ TEST(Contracts, FunctionsThatReturnMemoryStateItAndTheirErrors) {
       EXPECT_TRUE(states_exception(function)) << path << ": " << function.name << "() does not say that it may throw";
     }
   }
-  EXPECT_GE(checked, 5u) << "the search finds too few functions";
+  EXPECT_GE(checked, 3u) << "the search finds too few functions";
 }
 
 /// The clauses of a contract in their order. A clause is found by its first word.

@@ -70,29 +70,7 @@ const std::vector<Kind> file_kinds{{},
                                    {{.normals = true, .parameters = false, .patches = false}, true},
                                    {{.normals = false, .parameters = true, .patches = true}, true, true}};
 
-PlyPieces ply_of(const std::string& path, const MeshTotals& totals) {
-  return *PlyPieces::make(*OutputFile::make(path), totals);
-}
-
-TEST(PlyPieces, BytesAreThoseOfTheWhole) {
-  const ScratchFolder folder;
-  for (const Kind& kind : file_kinds)
-    for (const std::size_t count : {1u, 2u, 3u, 7u}) {
-      const std::vector<Mesh> pieces = pieces_of(count, kind);
-      std::vector<PiecePlace> places;
-      const Mesh whole = joined(pieces, places);
-      ASSERT_TRUE(write_mesh(whole, folder / "whole.ply").ok());
-      PlyPieces out = ply_of(folder / "pieces.ply", MeshTotals::of(whole));
-      for (std::size_t k = count; k-- > 0;) ASSERT_TRUE(out.write(pieces[k], places[k]).ok());  // in any order
-      EXPECT_FALSE(fs::exists(folder / "pieces.ply"));
-      ASSERT_TRUE(out.commit().ok());
-      EXPECT_TRUE(content_of(folder / "whole.ply") == content_of(folder / "pieces.ply")) << count << " pieces";
-      EXPECT_EQ(fs::file_size(folder / "pieces.ply"), out.layout().file_bytes());
-      fs::remove(folder / "pieces.ply");
-    }
-}
-
-TEST(PlyPieces, RecordsPackedAtTheirOffsetsMakeTheFile) {
+TEST(PlyLayout, RecordsPackedAtTheirOffsetsMakeTheFile) {
   const ScratchFolder folder;
   for (const Kind& kind : file_kinds) {
     const std::vector<Mesh> pieces = pieces_of(3, kind);
@@ -116,35 +94,26 @@ TEST(PlyPieces, RecordsPackedAtTheirOffsetsMakeTheFile) {
   }
 }
 
-TEST(PlyPieces, FaultsOfPiecesAreErrors) {
-  const ScratchFolder folder;
+TEST(PlyLayout, FaultsOfPiecesAreErrors) {
   const std::vector<Mesh> pieces = pieces_of(2, {});
   std::vector<PiecePlace> places;
-  const Mesh whole = joined(pieces, places);
-  const std::string path = folder / "m.ply";
-  {
-    PlyPieces out = ply_of(path, MeshTotals::of(whole));
-    PiecePlace far = places[1];
-    ++far.first_vertex;
-    EXPECT_EQ(out.write(pieces[1], far).message(), path + ": a piece of the mesh is not within the whole");
-    Mesh other = pieces[0];
-    other.normals.clear();
-    EXPECT_EQ(out.write(other, {}).code(), StatusCode::count_mismatch);
-    other = pieces[0];
-    other.indices[7] = 1000;
-    EXPECT_EQ(out.write(other, {}).index(), 7);
-    far = places[1];
-    far.first_patch = (std::uint64_t{1} << 32) - 100;
-    EXPECT_EQ(out.write(pieces[1], far).code(), StatusCode::unsupported);
-    ASSERT_TRUE(out.write(pieces[0], places[0]).ok());
-    const Status status = out.commit();
-    EXPECT_EQ(status.code(), StatusCode::count_mismatch);
-    EXPECT_EQ(status.message(), path + ": the pieces have 1000 vertices and 1800 faces, the mesh has 2037 and 3611");
-  }
-  EXPECT_EQ(folder.names(), Names{});
+  const Result<PlyLayout> layout = PlyLayout::make(MeshTotals::of(joined(pieces, places)));
+  ASSERT_TRUE(layout.ok());
+  PiecePlace far = places[1];
+  ++far.first_vertex;
+  EXPECT_EQ(layout->check(pieces[1], far).message(), "a piece of the mesh is not within the whole");
+  Mesh other = pieces[0];
+  other.normals.clear();
+  EXPECT_EQ(layout->check(other, {}).code(), StatusCode::count_mismatch);
+  other = pieces[0];
+  other.indices[7] = 1000;
+  EXPECT_EQ(layout->check(other, {}).index(), 7);
+  far = places[1];
+  far.first_patch = (std::uint64_t{1} << 32) - 100;
+  EXPECT_EQ(layout->check(pieces[1], far).code(), StatusCode::unsupported);
 }
 
-TEST(PlyPieces, TotalsBeyondIndicesNameTheWayOut) {
+TEST(PlyLayout, TotalsBeyondIndicesNameTheWayOut) {
   const Result<PlyLayout> layout = PlyLayout::make({.vertices = std::uint64_t{1} << 32, .triangles = 1});
   EXPECT_EQ(layout.status().code(), StatusCode::unsupported);
   EXPECT_EQ(layout.status().message(),
@@ -172,25 +141,6 @@ void with_full_disk(const Run& run) {
   run();
   ::setrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, handler);
-}
-
-TEST(PlyPieces, AFullDiskLeavesNothing) {
-  const ScratchFolder folder;
-  const std::string path = folder.file("m.ply", "before");
-  const std::vector<Mesh> pieces = pieces_of(7, {});
-  std::vector<PiecePlace> places;
-  const Mesh whole = joined(pieces, places);
-  Status written, status;
-  with_full_disk([&] {
-    PlyPieces out = ply_of(path, MeshTotals::of(whole));
-    for (std::size_t k = 0; k < pieces.size(); ++k) written = out.write(pieces[k], places[k]);
-    status = out.commit();
-  });
-  EXPECT_EQ(written.code(), StatusCode::io_error);
-  EXPECT_EQ(status.message(), path + ": cannot be written: File too large");
-  EXPECT_EQ(status.message(), written.message());
-  EXPECT_EQ(folder.names(), Names{"m.ply"});
-  EXPECT_EQ(content_of(path), "before");
 }
 
 PlyStream stream_of(const std::string& path) { return *PlyStream::make(*OutputFile::make(path)); }
@@ -241,14 +191,6 @@ TEST(PlyStream, FaultsAreErrorsAndLeaveNothing) {
   EXPECT_TRUE(written.ok());
   EXPECT_EQ(status.message(), path + ": cannot be written: File too large");
   EXPECT_EQ(folder.names(), Names{});
-}
-
-TEST(PlyPieces, APipeIsAnError) {
-  const ScratchFolder folder;
-  const std::vector<Mesh> pieces = pieces_of(1, {});
-  PlyPieces out = ply_of("/dev/full", MeshTotals::of(pieces[0]));
-  (void)out.write(pieces[0], {});
-  EXPECT_EQ(out.commit().code(), StatusCode::io_error);
 }
 
 /// The value of an attribute of the first element `element` that has the attribute `name`="`value`".

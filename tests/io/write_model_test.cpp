@@ -135,22 +135,6 @@ TEST_F(WriteModel, EveryFileOfOthersComesBack) {
   EXPECT_GE(trims, 5u);
 }
 
-TEST_F(WriteModel, APatchSetIsWrittenPatchByPatch) {
-  for (const char* name : {"uniform_b_spline_16", "nurbs_5x5", "goblet"}) {
-    const Model model = value_of(read_model(models / (std::string(name) + ".json")));
-    const PatchSet set = value_of(make_patch_set(model));
-    const Status status = write_model(set, folder_ / "a.obj");
-    ASSERT_TRUE(status.ok()) << status.message();
-    const Model read = value_of(read_model(folder_ / "a.obj"));
-    ASSERT_EQ(read.surfaces.size(), set.patch_count());
-    for (std::size_t k = 0; k < set.patch_count(); ++k) {
-      EXPECT_EQ(domain(read.surfaces[k].surface), set.source(k).domain);
-      EXPECT_EQ(read.surfaces[k].name, "surface " + std::to_string(set.source(k).surface));
-      expect_same_patches(set.patch(k), value_of(to_bezier(read.surfaces[k])).patch(0, 0), name);
-    }
-  }
-}
-
 TEST_F(WriteModel, RationalPatchesAreNamedWhereTheFormatHasNoWeights) {
   Random random(2);
   Model model = model_of({random_polynomial(random, 2, 2), random_rational(random, 2, 1)});
@@ -158,9 +142,6 @@ TEST_F(WriteModel, RationalPatchesAreNamedWhereTheFormatHasNoWeights) {
   expect_refused(model, "a.bpt", StatusCode::unsupported,
                  "surface 1 (rim): it is rational, but .bpt has no weights: write .obj");
   EXPECT_EQ(write_model(model, folder_ / "a.bpt").status().index(), 1);
-  const PatchSet set = value_of(make_patch_set(model));
-  const Status status = write_model(set, folder_ / "b.bpt");
-  EXPECT_EQ(status.message(), (folder_ / "b.bpt") + ": patch 1: it is rational, but .bpt has no weights: write .obj");
   EXPECT_TRUE(folder_.names().empty());
 }
 

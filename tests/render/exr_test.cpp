@@ -18,6 +18,21 @@ namespace tessera::render { namespace {
 
 using test::value_of;
 
+Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
+                           const Execution& execution = {}) {
+  const ClosestHits closest = [&](std::span<const Ray> rays, std::span<Hit> hits, const Execution& how) {
+    return scene.closest(rays, hits, how);
+  };
+  return render::cast_hits(closest, box, model, settings, execution);
+}
+
+Status write_exr(const HitImage& image, const std::string& path) {
+  Result<OutputFile> out = OutputFile::make(path);
+  if (!out) return out.status();
+  Status status = render::write_exr(image, *out);
+  return status.ok() ? out->commit() : status;
+}
+
 /// A model ready for rays.
 struct Scene {
   explicit Scene(Model of)

@@ -250,10 +250,6 @@ void writing(Table& table) {
   model_row("a placement with NaN", non_finite,
             {.name = "m", .surfaces = {{"a", plain, Affine::translated({not_a_number, 0, 0})}}}, "m.obj");
   model_row("a folder that is not there", io_error, {.name = "m", .surfaces = {{"a", plain}}}, "none/m.obj");
-  table.of("write_model(set, path)");
-  const PatchSet set = value_of(PatchSet::make(std::vector{plain, rational}));
-  table.row("a rational patch for .bpt", unsupported, write_model(set, "m.bpt"),
-            [&] { return here.folder.names() == before; });
 }
 
 }  // namespace

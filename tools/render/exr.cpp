@@ -94,13 +94,4 @@ Status write_exr(const HitImage& image, OutputFile& out) {
   });
 }
 
-Status write_exr(const HitImage& image, const std::filesystem::path& path) {
-  return guarded([&]() -> Status {
-    Result<OutputFile> out = OutputFile::make(path);
-    if (!out) return out.status();
-    Status status = write_exr(image, *out);
-    return status.ok() ? out->commit() : status;
-  });
-}
-
 }  // namespace tessera::render

@@ -73,12 +73,4 @@ Result<HitImage> cast_hits(const ClosestHits& closest, const Box3& box, const Mo
   return guarded([&] { return cast(closest, box, model, settings, execution); });
 }
 
-Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
-                           const Execution& execution) {
-  const ClosestHits closest = [&](std::span<const Ray> rays, std::span<Hit> hits, const Execution& how) {
-    return scene.closest(rays, hits, how);
-  };
-  return cast_hits(closest, box, model, settings, execution);
-}
-
 }  // namespace tessera::render

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <span>
 #include <vector>
@@ -27,12 +26,10 @@ struct HitImage {
 /// Finds the closest hits of rays, as RayScene::closest() does.
 using ClosestHits = std::function<Status(std::span<const Ray> rays, std::span<Hit> hits, const Execution& execution)>;
 
-/// Casts a ray per pixel. Uses only size and camera of the settings. `model` is the one that the scene was made of. The
-/// result is the same for any number of threads, byte for byte. Memory: 40 bytes per pixel. Errors: those of render,
-/// and invalid_argument (the scene has more surfaces than the model).
-Result<HitImage> cast_hits(const RayScene& scene, const Box3& box, const Model& model, const Settings& settings,
-                           const Execution& execution = {});
-/// Does the same with hits from elsewhere; `closest` is called on this thread, with a band of rows at a time.
+/// Casts a ray per pixel. `closest` is called on this thread, with a band of rows at a time. Uses only size and camera
+/// of the settings. `model` is the one that the scene was made of. The result is the same for any number of threads,
+/// byte for byte. Memory: 40 bytes per pixel. Errors: those of render, and invalid_argument (the scene has more
+/// surfaces than the model).
 Result<HitImage> cast_hits(const ClosestHits& closest, const Box3& box, const Model& model, const Settings& settings,
                            const Execution& execution = {});
 
@@ -40,7 +37,5 @@ Result<HitImage> cast_hits(const ClosestHits& closest, const Box3& box, const Mo
 /// patch. The file is open; the caller commits it. Memory: the compressed file. Errors: invalid_argument (lengths that
 /// don't fit the size), out_of_memory, internal (OpenEXR).
 Status write_exr(const HitImage& image, OutputFile& out);
-/// Writes a file, which appears whole or not at all. Errors: as above, io_error.
-Status write_exr(const HitImage& image, const std::filesystem::path& path);
 
 }  // namespace tessera::render

@@ -105,9 +105,6 @@ struct WrittenModel {
 /// Errors: io_error, unsupported (the extension; a rational surface for .bpt, index = the surface), invalid_argument
 /// (no surfaces), those of to_bezier().
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit = {});
-/// Writes the patches of a set, each over its rectangle of its surface's parameters. In .obj the group, such as
-/// "surface 3", names the surface. Errors: io_error, unsupported (index = the patch).
-Status write_model(const PatchSet& set, const std::filesystem::path& path);
 
 /// Writes a mesh in the model's coordinates, which are not turned: viewers differ in whether y or z is up. The file
 /// appears whole or not at all: it is written beside its place, then renamed.

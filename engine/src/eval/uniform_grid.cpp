@@ -1,21 +1,39 @@
 #include "eval/uniform_grid.h"
 
 #include <algorithm>
-#include <array>
 
-#include "base/aligned.h"
-#include "base/impl_access.h"
+#include "basis/bernstein.h"
 #include "block/patch_set_impl.h"
-#include "eval/border_weights.h"
 #include "eval/edited_grids.h"
 #include "eval/grid_plan_impl.h"
 #include "eval/patch_edits.h"
 #include "eval/task_size.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/parallel_for.h"
+#include "tessera/bezier_patch.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+// Weights of border curves, whose bits do not depend on the direction in which the curve runs.
+
+/// Bernstein weights at k / rate, `[k][i]`: B_i = C(n,i) (t^i s^(n-i)) with t = k / rate and s = (rate - k) / rate, so
+/// that B_i at k is B_{n-i} at rate - k, bit for bit.
+AlignedVector<float> symmetric_weights(int degree, int rate) {
+  AlignedVector<float> weights;
+  weights.reserve(static_cast<std::size_t>((rate + 1) * (degree + 1)));
+  for (int k = 0; k <= rate; ++k) {
+    std::array<double, max_degree + 1> t{1}, s{1};
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(degree); ++i) {
+      t[i] = t[i - 1] * (static_cast<double>(k) / rate);
+      s[i] = s[i - 1] * (static_cast<double>(rate - k) / rate);
+    }
+    for (int i = 0; i <= degree; ++i)
+      weights.push_back(static_cast<float>(binomial(degree, i) *
+                                           (t[static_cast<std::size_t>(i)] * s[static_cast<std::size_t>(degree - i)])));
+  }
+  return weights;
+}
 
 /// Where one edge of a patch lies in its net and in its grid.
 struct EdgePlace {

@@ -18,20 +18,129 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 
+#include "base/text.h"
 #include "io_occt/cad_file.h"
-#include "io_occt/iges_sections.h"
 #include "io_occt/iges_surfaces.h"
-#include "io_occt/iges_text.h"
 #include "io_occt/memory_file.h"
 #include "io_occt/text_encoding.h"
 #include "tessera/io.h"
+#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+// The frame of an IGES file: lines of 80 characters; the 73rd is the letter of their section.
+
+/// The letter of a line's section; 0 for a line that is too short.
+char section_of(const std::string& line) {
+  constexpr std::size_t column = 72;
+  return line.size() > column ? line[column] : '\0';
+}
+
+/// Checks that the file begins with section S and has section T, its last: OpenCASCADE takes a truncated file for a
+/// whole one. Errors: parse_error, io_error, unsupported (the compressed and the binary form).
+Status check_iges_sections(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  std::size_t number = 0;
+  bool ended = false;
+  while (!ended && std::getline(file, line)) {
+    const char section = section_of(line);
+    if (++number == 1 && (section == 'C' || section == 'B'))
+      return Status(StatusCode::unsupported,
+                    path + ": IGES in its " + (section == 'C' ? "compressed" : "binary") + " form is not read");
+    if (number == 1 && section != 'S')
+      return Status(StatusCode::parse_error, path + ":1: this is not IGES: the first line has no S in column 73");
+    ended = section == 'T';
+  }
+  if (file.bad()) return Status(StatusCode::io_error, path + ": cannot be read");
+  if (!ended)
+    return Status(StatusCode::parse_error,
+                  path + ":" + std::to_string(number) + ": the file ends before its section T: it is truncated");
+  return {};
+}
+
+// Checks and completes the B-spline surfaces in the text of an IGES file.
+
+Status check_weights(const IgesSurface& surface, const std::string& path) {
+  if (surface.number(7) == 1) return {};  // a polynomial surface
+  const std::size_t first = surface.weights(), row = surface.row();
+  for (std::size_t k = 0; k < row * surface.rows() && first + k < surface.words.size(); ++k) {
+    const double weight = surface.number(first + k);
+    if (weight > 0) continue;
+    return Status(StatusCode::invalid_weight, path + ": surface " + surface.entity + ": weight [" +
+                                                  std::to_string(k % row) + "][" + std::to_string(k / row) + "] is " +
+                                                  text(weight) + ", it must be greater than 0");
+  }
+  return {};
+}
+
+/// Completes the ranges of a surface. Whether any end was missing.
+bool complete(IgesSurface& surface) {
+  const std::size_t first = surface.ranges();
+  if (surface.words.size() < first) return false;  // points are missing, too
+  // Parameters run from knot M to knot K + 1, counted from 0.
+  const std::array<std::size_t, 4> ends{surface.knots_u() + surface.count(3), surface.knots_u() + surface.row(),
+                                        surface.knots_v() + surface.count(4), surface.knots_v() + surface.rows()};
+  bool missing = false;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    if (first + k == surface.words.size()) surface.words.emplace_back();
+    std::string& word = surface.words[first + k];
+    if (!word.empty()) continue;
+    word = surface.words[ends[k]];
+    missing = true;
+  }
+  return missing;
+}
+
+/// Appends the record of a surface. OpenCASCADE finds the lines of an entity by the number at their end.
+void append_record(const IgesSurface& surface, std::string& out) {
+  constexpr std::size_t columns = 64;
+  std::string line;
+  const auto end_line = [&] {
+    line.resize(columns, ' ');
+    out += line;
+    out += surface.begin_of_tail;
+    line.clear();
+  };
+  for (std::size_t k = 0; k < surface.words.size(); ++k) {
+    const std::string word = surface.words[k] + (k + 1 < surface.words.size() ? surface.parameter : surface.terminator);
+    if (line.size() + word.size() > columns) end_line();
+    line += word;
+  }
+  end_line();
+}
+
+/// Checks that the weights of all entities of type 128 are positive. If one is not, OpenCASCADE silently drops all
+/// weights of that surface and reads another one. Text that is not a number is left to OpenCASCADE. Messages begin with
+/// `path`. Errors: invalid_weight (names the entity and the weight).
+Status check_iges_weights(std::string_view text, const std::string& path) {
+  for (const IgesSurface& surface : iges_surfaces(text))
+    if (Status status = check_weights(surface, path); !status.ok()) return status;
+  return {};
+}
+
+/// The text with the ranges of parameters that entities of type 128 leave out: those of their knots. OpenCASCADE drops
+/// a surface without its ranges. Empty if none is left out.
+std::optional<std::string> with_iges_ranges(std::string_view text) {
+  std::string out;
+  std::size_t done = 0;
+  for (IgesSurface& surface : iges_surfaces(text)) {
+    if (!complete(surface)) continue;
+    out += text.substr(done, surface.begin - done);
+    append_record(surface, out);
+    done = surface.end;
+  }
+  if (done == 0) return {};
+  out += text.substr(done);
+  return out;
+}
 
 using opencascade::handle;
 

@@ -4,14 +4,52 @@
 #include <opencascade/Standard_OutOfMemory.hxx>
 
 #include <array>
+#include <fstream>
+#include <utility>
 
 #include "io_occt/cad_file.h"
-#include "io_occt/markless_file.h"
+#include "io_occt/memory_file.h"
 #include "io_occt/shape_model.h"
 #include "tessera/guard.h"
+#include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+/// A file without the byte order mark that an editor may have put before it. OpenCASCADE would take the mark for text,
+/// and in IGES it moves the columns of the first line. path() can be opened during the object's lifetime.
+class MarklessFile {
+ public:
+  /// Uses the file itself, or a copy in memory if it has the mark. Errors: io_error.
+  static Result<MarklessFile> make(const std::string& path);
+  const std::string& path() const { return path_; }
+
+ private:
+  MarklessFile() = default;
+  std::string path_;
+  MemoryFile copy_;
+};
+
+constexpr std::string_view mark = "\xEF\xBB\xBF";
+
+bool has_mark(const std::string& path) {
+  std::array<char, mark.size()> begin{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(begin.data(), begin.size()) && std::string_view(begin.data(), begin.size()) == mark;
+}
+
+Result<MarklessFile> MarklessFile::make(const std::string& path) {
+  MarklessFile result;
+  result.path_ = path;
+  if (!has_mark(path)) return result;
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes) return bytes.status();
+  Result<MemoryFile> copy = MemoryFile::make(std::string_view(*bytes).substr(mark.size()), path);
+  if (!copy) return copy.status();
+  result.copy_ = *std::move(copy);
+  result.path_ = result.copy_.path();
+  return result;
+}
 
 struct Loader {
   std::string_view format;

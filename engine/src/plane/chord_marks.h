@@ -88,7 +88,6 @@ class ChordMarks {
   void find_points();
   bool mark_side(const PlaneSegment& chord);
   void mark_near(const PlaneSegment& chord);
-  void mark_crossings(const PlaneSegment& chord, bool is_side);
   void cross_u(const PlaneSegment& chord, bool is_side);
   void cross_v(const PlaneSegment& chord, bool is_side);
   std::uint32_t vertex_at(std::uint32_t point) const { return vertices_of_points_[point]; }

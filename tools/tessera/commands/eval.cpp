@@ -298,21 +298,18 @@ Status run_eval(const Job& job, const EvalOptions& options, const CommonOptions&
 }
 
 constexpr const char* eval_footer =
-    "--params takes a table with the header line surface,u,v. Surfaces are counted from 0. u and v lie in the "
-    "surface's\n"
-    "own domain ([0,1] for a Bezier patch; canonical parameters for a quadric). # begins a comment.\n"
-    "Rows have surface,u,v and the position x,y,z; with --derivs 1 also dux,duy,duz,dvx,dvy,dvz; with --derivs 2 also\n"
-    "duux..duuz,duvx..duvz,dvvx..dvvz; then the unit normal nx,ny,nz, along r_u x r_v. Numbers have 17 significant "
-    "digits.\n"
-    "At a degenerate point (a pole) the normal is the limit. If there is none, it is 0,0,0 (null in JSON).\n"
-    "JSON: {\"rows\": [{\"surface\", \"u\", \"v\", \"position\", \"du\", \"dv\", \"duu\", \"duv\", \"dvv\", "
-    "\"normal\"}, ...]}\n"
-    "Several models give one table, or one table each if the output is a folder or contains {name}. With --json, rows "
-    "on\n"
-    "standard output are JSON; rows in a file have the --format, and standard output has a summary.\n"
-    "\nExamples:\n"
-    "  tessera eval teapot.bpt --grid 5x5 -o points.csv\n"
-    "  tessera eval teapot.bpt --params places.csv --derivs 2 --format json";
+    R"(--params takes a table with the header line surface,u,v. Surfaces are counted from 0. u and v lie in the surface's
+own domain ([0,1] for a Bezier patch; canonical parameters for a quadric). # begins a comment.
+Rows have surface,u,v and the position x,y,z; with --derivs 1 also dux,duy,duz,dvx,dvy,dvz; with --derivs 2 also
+duux..duuz,duvx..duvz,dvvx..dvvz; then the unit normal nx,ny,nz, along r_u x r_v. Numbers have 17 significant digits.
+At a degenerate point (a pole) the normal is the limit. If there is none, it is 0,0,0 (null in JSON).
+JSON: {"rows": [{"surface", "u", "v", "position", "du", "dv", "duu", "duv", "dvv", "normal"}, ...]}
+Several models give one table, or one table each if the output is a folder or contains {name}. With --json, rows on
+standard output are JSON; rows in a file have the --format, and standard output has a summary.
+
+Examples:
+  tessera eval teapot.bpt --grid 5x5 -o points.csv
+  tessera eval teapot.bpt --params places.csv --derivs 2 --format json)";
 
 /// Adds --grid and --params.
 void add_places(Command& command, EvalOptions& options) {

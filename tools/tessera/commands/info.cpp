@@ -159,25 +159,22 @@ Status run_info(const Job& job, const InfoOptions& options, const CommonOptions&
 }
 
 constexpr const char* info_footer =
-    "Joins: two patches have a border at the same place. They meet as C1 (one derivative across the border), as G1 "
-    "(one\n"
-    "normal, to 0.11 degrees), as C0 (one border, to 1e-6 of the two patches' size; the largest angle between the\n"
-    "normals is printed), or with a gap (the ends agree within 1e-4 of the model's size, the borders do not). Open\n"
-    "borders have no neighbour. Contacts in the middle of a border, or along trims, are not found.\n"
-    "Trims: faces with loops, and a remark on each loop that had to be repaired: gaps that a line closes, parts "
-    "beyond\n"
-    "the domain or over each other, loops that enclose nothing.\n"
-    "Edges, of models from CAD files: counts are those of all instances. An edge of two faces may be the seam of one.\n"
-    "The largest gap is the distance of two faces' points at equal parameters of their edge; the file's own "
-    "tolerance is\n"
-    "no bound of it.\n"
-    "If joined: the edges that faces share once those that run side by side are joined, where files state none or "
-    "free\n"
-    "ones, as IGES does: within 1e-4 of the size of a shape. Models of more than 20000 surfaces are left out.\n"
-    "Memory: surfaces with their points, weights, knots and trims; patches; blocks packed for evaluation.\n"
-    "\nExamples:\n"
-    "  tessera info teapot.bpt\n"
-    "  tessera info 'models/*.json' --json --timings";
+    R"(Joins: two patches have a border at the same place. They meet as C1 (one derivative across the border), as G1 (one
+normal, to 0.11 degrees), as C0 (one border, to 1e-6 of the two patches' size; the largest angle between the
+normals is printed), or with a gap (the ends agree within 1e-4 of the model's size, the borders do not). Open
+borders have no neighbour. Contacts in the middle of a border, or along trims, are not found.
+Trims: faces with loops, and a remark on each loop that had to be repaired: gaps that a line closes, parts beyond
+the domain or over each other, loops that enclose nothing.
+Edges, of models from CAD files: counts are those of all instances. An edge of two faces may be the seam of one.
+The largest gap is the distance of two faces' points at equal parameters of their edge; the file's own tolerance is
+no bound of it.
+If joined: the edges that faces share once those that run side by side are joined, where files state none or free
+ones, as IGES does: within 1e-4 of the size of a shape. Models of more than 20000 surfaces are left out.
+Memory: surfaces with their points, weights, knots and trims; patches; blocks packed for evaluation.
+
+Examples:
+  tessera info teapot.bpt
+  tessera info 'models/*.json' --json --timings)";
 
 }  // namespace
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "commands/commands.h"
-#include "commands/raycast_footer.h"
 #include "console/output.h"
 #include "console/terminal.h"
 #include "line/arguments.h"
@@ -17,6 +16,53 @@
 
 namespace tessera::cli {
 namespace {
+
+constexpr const char* raycast_footer =
+    R"(Pictures: -o, with --size, --shade and --camera. The default camera fits the model; --up names the axis that points up.
+Several models are one scene, or one picture each if the output is a folder or contains {name}. Rays see what trimming loops
+keep; --untrimmed takes surfaces whole.
+--shade error shows the distance of a mesh from the surfaces: deep blue where it is near, red at the proven bound of
+a certified mesh or at the largest distance found of your own mesh, magenta beyond.
+--shade lambert and clay show the colours that a CAD file states for faces or instances; other faces are white and
+grey. --shade clay has no floor.
+--shade curvature shows Gaussian curvature: domes are red, saddles blue, and grey is zero. --shade steps shows the
+cost of each pixel's ray in --mode exact, in pieces of patches looked at and parts of them searched: blue for one,
+red for 256 and more.
+A bar in the picture says which number a colour stands for.
+Meshes (.ply, .stl, .glb, .gltf, and .obj with faces) are drawn by their normals. --shade error, curvature and uv,
+.exr and --rays need surfaces.
+--edges draws a line wherever a surface, or a face of a CAD part, ends or meets another; seams have none. A mesh
+within 0.0002 of the size then stands for the surfaces, as the picture says at its lower border and in its metadata
+(Warning), and --shade is lambert, normals or clay. The lines of a mesh file are the edges of its
+triangles.
+.exr holds numbers of one ray through the middle of each pixel: the floats Z (distance from the eye), N.X N.Y N.Z,
+UV.U UV.V (parameters of the surface), and the integers surface and patch. For a miss, Z is inf and the integers
+are 4294967295.
+Without -o the picture is drawn in the terminal, one model after the other, two pixels per character. It has 24-bit
+colours if COLORTERM names them, 256 colours if TERM does, and otherwise plain characters, as in a pipe or with
+NO_COLOR.
+Hits of your own rays: --rays and --hits. Rays are a table with the header line ox,oy,oz,dx,dy,dz or
+ox,oy,oz,dx,dy,dz,tnear,tfar. Numbers are at most 1.844e18, the direction is not zero, 0 <= tnear <= tfar, and tfar
+may be inf; # begins a comment. Hits are the table ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz,edge,name with 17
+significant digits. edge is 1 if the ray passes an edge of a shape within its gap; name is that of the surface
+or face, if it has one. The table has one row for each ray, in the order of the rays, counted from 0. A miss has
+hit = 0 and empty fields. With --all-hits a ray has one row for each of its hits, in the order of t.
+--mode exact meets the surface itself, silhouettes too. --mode grid meets facets first and then the surface, and may
+miss a silhouette.
+
+Examples:
+  tessera raycast teapot.bpt
+  tessera raycast teapot.bpt -o teapot.png --size 1280x720
+  tessera raycast teapot.bpt -o teapot.png --shade normals --camera=4,-8,5,0,0,1.5,40
+  tessera raycast teapot.bpt -o error.png --shade error --relative 0.003
+  tessera raycast teapot.bpt -o error.png --shade error --mesh teapot.stl
+  tessera raycast part.step -o part.png --edges --shade clay
+  tessera raycast teapot.stl -o edges.png --edges --shade clay --up y
+  tessera raycast teapot.bpt -o cost.png --shade steps
+  tessera raycast teapot.bpt -o facets.png --mode grid --rate 4
+  tessera raycast 'parts/*.step' -o 'pictures/{name}.png'
+  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv
+  tessera raycast teapot.bpt --rays rays.csv --hits hits.csv --all-hits)";
 
 Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOptions& common, Timings& timings) {
   Result<OutputFile> out = open_output(job.output, options.writes());

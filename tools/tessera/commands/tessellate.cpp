@@ -4,7 +4,6 @@
 
 #include "batch/batch.h"
 #include "commands/commands.h"
-#include "commands/tessellate_footer.h"
 #include "console/output.h"
 #include "line/arguments.h"
 #include "stages/faults.h"
@@ -14,6 +13,28 @@
 
 namespace tessera::cli {
 namespace {
+
+constexpr const char* tessellate_footer =
+    R"(The mesh has positions, normals and parameters (.stl: triangles only). .obj, .glb and .gltf have one part for each
+surface. Neighbours share their borders bit for bit. With --share-vertices they share vertices too; a shared
+vertex has the parameters of the first of its patches. Several models become one mesh, or one mesh each if the
+output is a folder (then as .ply) or contains {name}.
+Each shape of a CAD file is meshed once. .glb and .gltf have a node for each instance, with its name, place and
+colours, in metres; others have one mesh of all instances. --triangles and --pixels mesh all faces as one.
+With --tolerance, --relative or --triangles each patch gets the rates that it needs, and neighbours meet without a
+crack. The printed bound is proven, and includes fits and the rounding of the file's numbers. With --quads whole
+cells are faces of four corners; strips along borders and cells at poles are triangles.
+Far from zero .ply and .obj get positions in double; a .stl that does not keep the tolerance is written with a
+warning.
+With --in-pieces a .ply has the bytes that it has without, unless faces are trimmed: these are not joined.
+
+Examples:
+  tessera tessellate part.step -o part.glb
+  tessera tessellate teapot.bpt -o teapot.ply --grid 16x16
+  tessera tessellate teapot.bpt -o teapot.ply --tolerance 0.001 --angle 10
+  tessera tessellate teapot.bpt -o teapot.ply --pixels 0.5 --camera=4,-8,5,0,0,1.5,40
+  tessera tessellate huge.bpt -o huge.pvtp --in-pieces 4G
+  tessera tessellate 'parts/*.json' -o 'meshes/{name}.obj' --grid 8x8)";
 
 /// Reads, meshes and writes a model that is larger than memory.
 Status run_in_pieces(const Job& job, const TessellateOptions& options, const CommonOptions& common, Timings& timings) {

@@ -2,11 +2,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
-#include "convert/join/border_maximum.h"
+#include "basis/bernstein_net.h"
 #include "convert/join/side_rows.h"
 #include "surface/net/homogeneous.h"
 #include "tessera/bezier_operations.h"
+#include "tessera/geometry.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 
@@ -16,6 +19,93 @@
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+// Proven maxima along a border of functions made of a vector and a scalar polynomial.
+
+/// A vector curve and a scalar curve, both on [0,1].
+struct VectorRatio {
+  BernsteinNet<Vec3> numerator;
+  BernsteinNet<double> denominator;
+};
+
+/// An upper bound; `sharp` says that it is within 0.1 % or `floor` of the true maximum.
+struct Maximum {
+  double bound = 0;
+  bool sharp = true;
+};
+
+constexpr int max_halvings = 40;
+constexpr int max_pieces = 20000;
+
+struct Piece {
+  VectorRatio ratio;
+  int depth = 0;
+};
+
+template <class Upper, class Lower>
+Maximum maximum(const VectorRatio& whole, double floor, Upper upper, Lower lower) {
+  Maximum result;
+  double attained = 0;
+  std::vector<Piece> open{{whole, 0}};
+  for (int count = 0; !open.empty(); ++count) {
+    const Piece piece = std::move(open.back());
+    open.pop_back();
+    const VectorRatio& r = piece.ratio;
+    attained = std::max({attained, lower(r.numerator.values.front(), r.denominator.values.front()),
+                         lower(r.numerator.values.back(), r.denominator.values.back())});
+    const double bound = upper(r);
+    const bool settled = bound <= std::max(1.001 * attained, attained + floor);
+    if (settled || piece.depth == max_halvings || count >= max_pieces) {
+      result.bound = std::max(result.bound, bound);
+      result.sharp = result.sharp && settled;
+      continue;
+    }
+    auto [first, second] = halves(r.numerator);
+    auto [first_below, second_below] = halves(r.denominator);
+    open.push_back({{std::move(second), std::move(second_below)}, piece.depth + 1});
+    open.push_back({{std::move(first), std::move(first_below)}, piece.depth + 1});
+  }
+  return result;
+}
+
+double largest(const BernsteinNet<Vec3>& net) {
+  double value = 0;
+  for (const Vec3& p : net.values) value = std::max(value, length(p));
+  return value;
+}
+
+/// Returns a lower bound of |p| over the hull: the least distance from zero along the mean direction.
+double smallest(const BernsteinNet<Vec3>& net) {
+  Vec3 mean;
+  for (const Vec3& p : net.values) mean += p;
+  mean = normalized(mean);
+  double value = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : net.values) value = std::min(value, dot(p, mean));
+  return std::max(value, 0.0);
+}
+
+/// Bounds max |numerator| / denominator, for a positive denominator.
+Maximum largest_length(const VectorRatio& ratio, double floor) {
+  const auto upper = [](const VectorRatio& r) {
+    const double top = largest(r.numerator),
+                 least = *std::min_element(r.denominator.values.begin(), r.denominator.values.end());
+    return top == 0 ? 0 : least > 0 ? top / least : std::numeric_limits<double>::infinity();
+  };
+  return maximum(ratio, floor, upper, [](const Vec3& p, double w) { return w > 0 ? length(p) / w : 0; });
+}
+
+/// Bounds the maximum of the angle atan2(|numerator|, denominator), for numerator = a x b and denominator = a . b.
+Maximum largest_angle(const VectorRatio& ratio, double floor) {
+  const auto upper = [](const VectorRatio& r) {
+    // The angle falls as the denominator grows. For a fixed denominator the maximum is at an end of the numerator's
+    // range.
+    const double least = *std::min_element(r.denominator.values.begin(), r.denominator.values.end());
+    const double far = largest(r.numerator), near = smallest(r.numerator);
+    if (far == 0 && least == 0) return std::numbers::pi;  // a normal vanishes
+    return std::max(std::atan2(far, least), std::atan2(near, least));
+  };
+  return maximum(ratio, floor, upper, [](const Vec3& p, double x) { return std::atan2(length(p), x); });
+}
 
 using Scalars = BernsteinNet<double>;
 using Vectors = BernsteinNet<Vec3>;

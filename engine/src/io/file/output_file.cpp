@@ -8,7 +8,6 @@
 #include <array>
 #include <cerrno>
 #include <climits>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
@@ -258,11 +257,10 @@ void OutputFile::flush() {
   used_ = 0;
 }
 
-template <class WriteSome>
-void OutputFile::send_by(std::string_view bytes, WriteSome write_some) {
+void OutputFile::send(std::string_view bytes) {
   see_cancel();
   while (!bytes.empty() && status_.ok()) {
-    const ssize_t sent = write_some(bytes);
+    const ssize_t sent = ::write(destination_->file.number(), bytes.data(), bytes.size());
     if (sent < 0 && errno == EINTR) {
       see_cancel();
     } else if (sent < 0) {
@@ -271,17 +269,6 @@ void OutputFile::send_by(std::string_view bytes, WriteSome write_some) {
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
   }
-}
-
-void OutputFile::send(std::string_view bytes) {
-  send_by(bytes, [&](std::string_view rest) { return ::write(destination_->file.number(), rest.data(), rest.size()); });
-}
-
-void OutputFile::write_at(std::uint64_t offset, std::string_view bytes) {
-  const std::uint64_t end = offset + bytes.size();
-  send_by(bytes, [&](std::string_view rest) {
-    return ::pwrite(destination_->file.number(), rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
-  });
 }
 
 void OutputFile::see_cancel() {

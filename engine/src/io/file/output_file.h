@@ -54,9 +54,6 @@ class OutputFile {
     used_ += static_cast<std::size_t>(std::to_chars(begin, begin + 32, value, std::chars_format::general, digits).ptr -
                                       begin);
   }
-  /// Writes bytes `offset` bytes after the begin of the file, beside what write() writes one after the other. Only for
-  /// regular files. One thread at a time, as for write().
-  void write_at(std::uint64_t offset, std::string_view bytes);
 
   /// The final place of the file.
   const std::filesystem::path& path() const { return target_; }
@@ -78,8 +75,6 @@ class OutputFile {
   }
   void flush();
   void send(std::string_view bytes);
-  template <class WriteSome>
-  void send_by(std::string_view bytes, WriteSome write_some);
   void fail(int error_number);
   void see_cancel();
 

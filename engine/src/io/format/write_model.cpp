@@ -1,7 +1,6 @@
 // Converts surfaces to patches and writes them.
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
@@ -56,25 +55,6 @@ Result<WrittenModel> write(const Model& model, const fs::path& path, const FitOp
   return facts;
 }
 
-Status write(const PatchSet& set, const fs::path& path, OutputFile& out) {
-  const Result<SurfaceWriter> writer = surface_writer(path);
-  if (!writer) return writer.status();
-  std::vector<std::array<double, 4>> breaks(set.patch_count());
-  std::vector<std::string> names(set.patch_count());
-  std::vector<WrittenSurface> patches(set.patch_count());
-  for (std::size_t k = 0; k < set.patch_count(); ++k) {
-    const auto& [surface, domain] = set.source(k);
-    breaks[k] = {domain.u0, domain.u1, domain.v0, domain.v1};
-    names[k] = "surface " + std::to_string(surface);
-    patches[k] = {names[k], std::span(breaks[k]).first(2), std::span(breaks[k]).last(2), {&set.patch(k), 1}, {}};
-  }
-  std::vector<std::string> no_warnings;
-  Status status = writer->write(patches, out, no_warnings);
-  if (status.ok()) return status;
-  return Status(status.code(), path.string() + ": patch " + std::to_string(status.index()) + ": " + status.message(),
-                status.index());
-}
-
 }  // namespace
 
 std::string trims_left_out(std::size_t surface, const WrittenSurface& written, std::string_view why) {
@@ -96,16 +76,6 @@ Result<WrittenModel> write_model(const Model& model, const fs::path& path, const
     if (!facts) return facts;
     if (Status status = out->commit(); !status.ok()) return status;
     return facts;
-  });
-}
-
-Status write_model(const PatchSet& set, const fs::path& path) {
-  return guarded([&]() -> Status {
-    if (Status status = check_model_format(path); !status.ok()) return status;
-    Result<OutputFile> out = OutputFile::make(path);
-    if (!out) return out.status();
-    Status status = write(set, path, *out);
-    return status.ok() ? out->commit() : status;
   });
 }
 

@@ -80,28 +80,6 @@ class PlyLayout {
   std::string header_;
 };
 
-/// Writes a .ply file piece by piece. The file appears whole, at commit(), or not at all. Memory: 3 MiB beside a piece.
-class PlyPieces {
- public:
-  /// `out` is a file that nothing was written to. Errors: those of PlyLayout::make().
-  static Result<PlyPieces> make(OutputFile out, const MeshTotals& totals);
-
-  const PlyLayout& layout() const { return layout_; }  ///< where each piece goes
-  /// Writes a piece. Pieces come in any order, each once. Errors: those of PlyLayout::check(); io_error and cancelled
-  /// as soon as a write has failed.
-  Status write(const Mesh& piece, const PiecePlace& place);
-  /// Ends the file. Call it once, last. Errors: count_mismatch (the pieces are not all of the mesh), io_error,
-  /// cancelled.
-  Status commit();
-
- private:
-  PlyPieces(OutputFile out, PlyLayout layout) : out_(std::move(out)), layout_(std::move(layout)) {}
-  OutputFile out_;
-  PlyLayout layout_;
-  std::uint64_t vertices_ = 0, triangles_ = 0, quads_ = 0;
-  Status failure_;  ///< of a write
-};
-
 /// Writes a .ply file of pieces in their order, before it is known how many come. The file has the bytes that
 /// write_mesh() gives the whole mesh, and appears whole, at commit(), or not at all. Records wait in files without a
 /// name beside it, which takes the room of the file twice. Memory: 3 MiB beside a piece.

@@ -39,14 +39,9 @@ Status write_packed(PackedSink write, std::size_t count, std::size_t bytes,
 }
 
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
-                    FunctionRef<void(std::size_t, std::size_t, char*)> pack, std::optional<std::uint64_t> offset) {
+                    FunctionRef<void(std::size_t, std::size_t, char*)> pack) {
   const auto write = [&](std::string_view packed) {
-    if (offset) {
-      out.write_at(*offset, packed);
-      *offset += packed.size();
-    } else {
-      out.write(packed);
-    }
+    out.write(packed);
     return !out.failed();
   };
   return write_packed(PackedSink(write), count, bytes, pack);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <string_view>
 
 #include "base/function_ref.h"
@@ -20,9 +19,9 @@ using PackedSink = FunctionRef<bool(std::string_view)>;
 /// called for pieces of them from any number of threads. Memory: 2 MiB. Errors: what `pack` throws, as a Status.
 Status write_packed(PackedSink write, std::size_t count, std::size_t bytes,
                     FunctionRef<void(std::size_t, std::size_t, char*)> pack);
-/// Writes to a file. `offset`: where the first record stands there; none: after what was written last.
+/// Writes to a file.
 Status write_packed(OutputFile& out, std::size_t count, std::size_t bytes,
-                    FunctionRef<void(std::size_t, std::size_t, char*)> pack, std::optional<std::uint64_t> offset = {});
+                    FunctionRef<void(std::size_t, std::size_t, char*)> pack);
 
 /// Stores three floats at `to`, one by one: to fill an array and copy it takes half as long again, because the copy
 /// reads before the stores are done.

@@ -1,17 +1,85 @@
 // A .ply file of pieces whose number is not known before: records of each kind wait in a file of their own.
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <array>
+#include <cerrno>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "io/file/spool_file.h"
+#include "io/file/descriptor.h"
+#include "io/file/file.h"
+#include "io/file/output_file.h"
 #include "io/mesh/mesh_pieces.h"
 #include "io/mesh/packed_records.h"
 #include "io/mesh/valid_mesh.h"
 #include "tessera/guard.h"
+#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// A file without a name, which goes with this object, also if the process is killed. One thread at a time.
+class SpoolFile {
+ public:
+  /// Makes one on the file system of `path`, a file that need not exist. Errors: io_error.
+  static Result<SpoolFile> make(const std::filesystem::path& path);
+
+  /// Appends bytes. Errors: io_error, with `path` of make().
+  Status write(std::string_view bytes);
+  /// Writes all bytes to the end of another file, and gives back their room. Errors: io_error (reading).
+  Status move_to(OutputFile& out);
+
+ private:
+  SpoolFile(std::filesystem::path path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
+
+  std::filesystem::path path_;
+  Descriptor file_;
+};
+
+Result<SpoolFile> SpoolFile::make(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  Descriptor file(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+  if (!file.is_open()) {  // a file system without such files
+    std::string name = (folder / ".tessera-XXXXXX").string();
+    file = Descriptor(::mkostemp(name.data(), O_CLOEXEC));
+    if (!file.is_open()) return io_failure(path, "cannot be written in " + folder.string(), errno);
+    ::unlink(name.c_str());
+  }
+  return SpoolFile(path, std::move(file));
+}
+
+Status SpoolFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::write(file_.number(), bytes.data(), bytes.size());
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) return io_failure(path_, "cannot be written", errno);
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return {};
+}
+
+Status SpoolFile::move_to(OutputFile& out) {
+  std::vector<char> buffer(std::size_t{1} << 20);
+  std::uint64_t offset = 0;
+  while (!out.failed()) {
+    const ssize_t got = ::pread(file_.number(), buffer.data(), buffer.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return io_failure(path_, "cannot be read back", errno);
+    if (got == 0) break;
+    out.write({buffer.data(), static_cast<std::size_t>(got)});
+    offset += static_cast<std::uint64_t>(got);
+  }
+  file_ = Descriptor();
+  return {};
+}
+
+}  // namespace
 
 class PlyStream::Content {
  public:

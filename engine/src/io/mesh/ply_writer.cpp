@@ -6,7 +6,6 @@
 #include <cstring>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "io/mesh/file_rounding.h"
 #include "io/mesh/mesh_formats.h"
@@ -91,21 +90,6 @@ void pack_faces(const PiecePlace& place, const std::vector<std::uint32_t>& indic
   }
 }
 
-/// Writes the records of a piece: at their places in the file, or after what was written last.
-Status write_records(const PlyLayout& layout, const Mesh& piece, const PiecePlace& place, bool at_places,
-                     OutputFile& out) {
-  for (const MeshRecord kind : record_kinds) {
-    const auto pack = [&](std::size_t first, std::size_t last, char* to) {
-      layout.pack(piece, place, kind, first, last, to);
-    };
-    std::optional<std::uint64_t> offset;
-    if (at_places) offset = layout.range(piece, place, kind).offset;
-    Status status = write_packed(out, count_of(piece, kind), layout.record_bytes(kind), pack, offset);
-    if (!status.ok()) return status;
-  }
-  return {};
-}
-
 }  // namespace
 
 MeshTotals MeshTotals::of(const Mesh& mesh) {
@@ -180,42 +164,14 @@ Status write_ply(const Mesh& mesh, OutputFile& out) {
   const Result<PlyLayout> layout = PlyLayout::make(totals);
   if (!layout) return layout.status();
   out.write(layout->header());
-  return write_records(*layout, mesh, {}, false, out);  // the file may be a pipe
-}
-
-Result<PlyPieces> PlyPieces::make(OutputFile out, const MeshTotals& totals) {
-  return guarded([&]() -> Result<PlyPieces> {
-    Result<PlyLayout> layout = PlyLayout::make(totals);
-    if (!layout) return Status(layout.status().code(), out.path().string() + ": " + layout.status().message());
-    out.write(layout->header());
-    return PlyPieces(std::move(out), *std::move(layout));
-  });
-}
-
-Status PlyPieces::write(const Mesh& piece, const PiecePlace& place) {
-  return guarded([&]() -> Status {
-    if (const Status status = layout_.check(piece, place); !status.ok())
-      return {status.code(), out_.path().string() + ": " + status.message(), status.index()};
-    if (Status status = write_records(layout_, piece, place, true, out_); !status.ok()) return status;
-    vertices_ += piece.vertex_count();
-    triangles_ += piece.triangle_count();
-    quads_ += piece.quad_count();
-    if (out_.failed() && failure_.ok()) failure_ = out_.commit();
-    return failure_;
-  });
-}
-
-Status PlyPieces::commit() {
-  return guarded([&]() -> Status {
-    const MeshTotals& totals = layout_.totals();
-    if (!failure_.ok()) return failure_;
-    if (!out_.failed() && (vertices_ != totals.vertices || triangles_ != totals.triangles || quads_ != totals.quads))
-      return {StatusCode::count_mismatch, out_.path().string() + ": the pieces have " + std::to_string(vertices_) +
-                                              " vertices and " + std::to_string(triangles_ + quads_) +
-                                              " faces, the mesh has " + std::to_string(totals.vertices) + " and " +
-                                              std::to_string(totals.triangles + totals.quads)};
-    return out_.commit();
-  });
+  for (const MeshRecord kind : record_kinds) {
+    const auto pack = [&](std::size_t first, std::size_t last, char* to) {
+      layout->pack(mesh, {}, kind, first, last, to);
+    };
+    Status status = write_packed(out, count_of(mesh, kind), layout->record_bytes(kind), pack);
+    if (!status.ok()) return status;
+  }
+  return {};
 }
 
 }}  // namespace tessera::abi_0_1

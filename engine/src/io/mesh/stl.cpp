@@ -5,19 +5,66 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "io/file/output_file.h"
 #include "io/file/text_cursor.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/packed_records.h"
-#include "io/mesh/vertex_welder.h"
+#include "tess/edges/position_bits.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+/// Numbers distinct positions in the order in which they come. Positions are equal if their bits are, with -0 taken as
+/// 0. Memory: 4 to 16 bytes per vertex besides the positions.
+class VertexWelder {
+ public:
+  /// New positions are appended to `positions`: three floats per vertex, at most 2^32 - 1 vertices.
+  explicit VertexWelder(std::vector<float>& positions) : positions_(positions), table_(min_size, no_id) {}
+
+  std::uint32_t index_of(const std::array<float, 3>& position);
+
+ private:
+  static constexpr std::size_t min_size = 64;  // a power of two, like all sizes
+
+  std::size_t slot_of(const std::array<float, 3>& position) const;
+  void grow();
+
+  std::vector<float>& positions_;
+  std::vector<std::uint32_t> table_;  // open hash table of vertices
+};
+
+std::size_t VertexWelder::slot_of(const std::array<float, 3>& position) const {
+  const PositionBits bits = position_bits(position.data());
+  std::size_t slot = hash(bits) & (table_.size() - 1);
+  while (table_[slot] != no_id && position_bits(&positions_[3 * std::size_t{table_[slot]}]) != bits)
+    slot = (slot + 1) & (table_.size() - 1);
+  return slot;
+}
+
+std::uint32_t VertexWelder::index_of(const std::array<float, 3>& position) {
+  const std::size_t slot = slot_of(position);
+  if (table_[slot] != no_id) return table_[slot];
+  const std::size_t index = positions_.size() / 3;
+  table_[slot] = static_cast<std::uint32_t>(index);
+  positions_.insert(positions_.end(), position.begin(), position.end());
+  if (2 * (index + 1) > table_.size()) grow();
+  return static_cast<std::uint32_t>(index);
+}
+
+void VertexWelder::grow() {
+  const std::size_t vertices = positions_.size() / 3;
+  table_.assign(2 * table_.size(), no_id);
+  for (std::size_t k = 0; k < vertices; ++k) {
+    const float* const p = &positions_[3 * k];
+    table_[slot_of({p[0], p[1], p[2]})] = static_cast<std::uint32_t>(k);
+  }
+}
 
 static_assert(std::endian::native == std::endian::little, "STL is read and written in the machine's own byte order");
 

@@ -17,8 +17,6 @@ bool RibLexer::at_end() {
   return cursor_.at_end();
 }
 
-bool RibLexer::at_request() { return is_letter(next()); }
-
 bool RibLexer::at_string() { return next() == '"'; }
 
 bool RibLexer::at_value() {

@@ -18,7 +18,6 @@ class RibLexer {
 
   // Whether nothing follows but white space and comments.
   bool at_end();
-  bool at_request();
   bool at_string();
   /// Whether a number, a string or an array follows.
   bool at_value();
