@@ -1,7 +1,6 @@
 // Shades that show numbers: normals, parameters, patches, errors, curvature, cost.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

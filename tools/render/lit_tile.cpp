@@ -2,7 +2,6 @@
 // the model a mirrored ray with a shadow ray of its own.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "render/random.h"

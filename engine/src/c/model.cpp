@@ -1,6 +1,5 @@
 // Models of the C interface.
 
-#include <bit>
 #include <span>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // Plans of the C interface.
 
 #include <numbers>
-#include <span>
 
 #include "c/mesh.h"
 #include "c/objects.h"

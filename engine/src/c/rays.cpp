@@ -1,7 +1,6 @@
 // Rays of the C interface.
 
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "c/objects.h"

@@ -1,6 +1,5 @@
 // Patch sets of the C interface, and their evaluation.
 
-#include <bit>
 #include <span>
 #include <vector>
 

@@ -1,10 +1,8 @@
 #include "tessera/evaluate.h"
 
 #include <atomic>
-#include <cmath>
 #include <limits>
 #include <mutex>
-#include <string>
 
 #include "base/internal_export.h"
 #include "base/text.h"

@@ -9,7 +9,6 @@
 // cache (eval/staged_block.h).
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string>
 

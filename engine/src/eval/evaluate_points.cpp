@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <string>
 
 #include "base/impl_access.h"
 #include "base/text.h"

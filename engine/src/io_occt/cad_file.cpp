@@ -2,7 +2,6 @@
 
 #include <opencascade/Interface_Check.hxx>
 #include <opencascade/Interface_CheckIterator.hxx>
-#include <opencascade/Interface_InterfaceModel.hxx>
 #include <opencascade/Interface_Static.hxx>
 #include <opencascade/Message.hxx>
 #include <opencascade/Message_Messenger.hxx>

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include "base/text.h"
 #include "convert/fit/cubic_fit.h"

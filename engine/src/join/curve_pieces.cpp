@@ -1,8 +1,6 @@
 #include "join/curve_pieces.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <optional>
 #include <tuple>
 

@@ -6,7 +6,6 @@
 
 #include "parallel/tbb_loop.h"
 #include "tessera/guard.h"
-#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

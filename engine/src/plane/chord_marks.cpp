@@ -1,7 +1,6 @@
 #include "plane/chord_marks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace tessera { inline namespace abi_0_1 {

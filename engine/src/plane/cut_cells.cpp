@@ -1,7 +1,5 @@
 #include "plane/cut_cells.h"
 
-#include <cstddef>
-
 namespace tessera { inline namespace abi_0_1 {
 
 bool CutCells::run(const GridLines& grid, std::span<const ParameterPoint> points,

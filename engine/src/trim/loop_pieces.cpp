@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "base/text.h"
 #include "convert/spline/curve_pieces.h"

@@ -1,6 +1,5 @@
 #include "trim/piece_side.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "basis/exact_sign.h"

@@ -1,7 +1,6 @@
 #include "trim/plane_bezier.h"
 
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <span>
 

@@ -11,7 +11,6 @@
 #include <set>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "batch/workers.h"
 #include "console/console.h"

@@ -4,7 +4,6 @@
 #include <tbb/task_arena.h>
 
 #include <cstdlib>
-#include <utility>
 
 #include "line/arguments.h"
 #include "tessera/execution.h"

@@ -1,7 +1,6 @@
 #include "picture/mesh_error.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "line/arguments.h"
 #include "tessera/io.h"

@@ -2,7 +2,6 @@
 #include "io/file/text_cursor.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "console/console.h"
 #include "console/memory.h"

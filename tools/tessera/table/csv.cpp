@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "tessera/io.h"
-#include "tessera/ray_scene.h"
 
 namespace tessera::cli {
 namespace {

@@ -1,6 +1,5 @@
 #include "convert/basis/bezier_net.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "surface/net/patch_pieces.h"

@@ -1,7 +1,6 @@
 #include "convert/kind/surface_net.h"
 
 #include <algorithm>
-#include <string>
 
 #include "surface/net/patch_pieces.h"
 #include "surface/net/validate.h"

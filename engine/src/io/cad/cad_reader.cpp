@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
-#include <limits>
 
 #include "base/text.h"
 #include "io/cad/child_process.h"

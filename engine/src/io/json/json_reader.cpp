@@ -1,7 +1,6 @@
 #include "io/json/json_reader.h"
 #include "io/file/text_cursor.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "io/json/expression.h"

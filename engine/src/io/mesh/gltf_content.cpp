@@ -3,7 +3,6 @@
 #include "io/mesh/gltf_content.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,5 @@
 #include "io/obj/freeform_line.h"
 
-#include <algorithm>
 #include <string>
 
 #include "base/text.h"

@@ -1,7 +1,6 @@
 // Polygons of Wavefront OBJ ("Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual).
 
 #include <array>
-#include <limits>
 #include <string>
 
 #include "io/file/output_file.h"

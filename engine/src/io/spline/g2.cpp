@@ -6,14 +6,11 @@
 #include "io/spline/g2.h"
 
 #include <algorithm>
-#include <optional>
-#include <vector>
 
 #include "base/text.h"
 #include "io/spline/item_reader.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
-#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

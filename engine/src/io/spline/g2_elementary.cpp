@@ -1,7 +1,6 @@
 // Elementary surfaces of .g2 files. GoTools writes the dimension, sizes, the location, the z axis, the x axis, the
 // range of the parameters, and whether the two are swapped.
 
-#include <algorithm>
 #include <cmath>
 
 #include "io/spline/elementary.h"

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "kernel/table/kernel_table.h"
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_ray.h"
-#include "ray/leaf/leaf_tracer.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

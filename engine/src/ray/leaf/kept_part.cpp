@@ -1,6 +1,5 @@
 #include "ray/leaf/kept_part.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,6 @@
 #include "ray/leaf/leaf_cuts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <new>

@@ -1,7 +1,6 @@
 #include "ray/leaf/leaf_nets.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <new>
 

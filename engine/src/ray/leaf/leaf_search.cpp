@@ -8,7 +8,6 @@
 #include "base/infinity.h"
 #include "ray/net/bounded_step.h"
 #include "ray/net/edge_on.h"
-#include "ray/net/projected_net.h"
 #include "ray/net/root_certificate.h"
 
 namespace tessera { inline namespace abi_0_1 {

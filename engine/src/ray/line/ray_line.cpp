@@ -1,7 +1,6 @@
 #include "ray/line/ray_line.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -5,7 +5,6 @@
 
 #include "ray/embree/embree_scene.h"
 #include "tessera/guard.h"
-#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

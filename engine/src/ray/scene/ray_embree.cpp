@@ -1,7 +1,6 @@
 #include "tessera/ray_embree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/impl_access.h"

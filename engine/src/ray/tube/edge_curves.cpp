@@ -1,6 +1,5 @@
 #include "ray/tube/edge_curves.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>

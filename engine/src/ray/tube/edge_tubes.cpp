@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 
 #include "parallel/parallel_for.h"
 #include "ray/tube/centre_curve.h"

@@ -1,7 +1,6 @@
 #include "tessera/parametric_surface.h"
 
 #include <limits>
-#include <string>
 #include <utility>
 
 #include "base/text.h"

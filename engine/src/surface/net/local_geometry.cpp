@@ -1,6 +1,5 @@
 #include "tessera/local_geometry.h"
 
-#include <algorithm>
 #include <cmath>
 
 // With r_u = a e1 and r_v = b e1 + c e2 in an orthonormal basis e1, e2 of the tangent plane, the second form in it is S

@@ -1,9 +1,5 @@
 #include "tess/bounds/chord_bound.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "tess/bounds/derivative_nets.h"
 
 namespace tessera { inline namespace abi_0_1 {

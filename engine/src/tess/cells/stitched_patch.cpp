@@ -1,7 +1,5 @@
 #include "tess/cells/stitched_patch.h"
 
-#include <algorithm>
-
 #include "tess/cells/write_triangle.h"
 
 namespace tessera { inline namespace abi_0_1 {

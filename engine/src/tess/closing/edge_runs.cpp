@@ -1,9 +1,7 @@
 #include "tess/closing/edge_runs.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "base/impl_access.h"
 #include "block/patch_trims.h"

@@ -1,13 +1,10 @@
 #include "tess/edges/weld.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
-#include <vector>
 
 #include "base/union_find.h"
 #include "tess/edges/short_sides.h"

@@ -1,7 +1,6 @@
 // Meshes with tolerances that follow edits: control points are packed and proven, then vertices are written.
 
 #include <algorithm>
-#include <string>
 
 #include "base/impl_access.h"
 #include "eval/patch_edits.h"

@@ -8,7 +8,6 @@
 #include "tessera/guard.h"
 #include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
-#include "tessera/status.h"
 #include "tessera/tessellation.h"
 
 namespace tessera { inline namespace abi_0_1 {

@@ -1,8 +1,6 @@
 #include "tess/mesh/proven_mesh.h"
 
 #include <algorithm>
-#include <limits>
-#include <string>
 
 #include "base/impl_access.h"
 #include "base/text.h"

@@ -1,7 +1,6 @@
 #include "tessera/tessellate.h"
 
 #include <span>
-#include <string>
 
 #include "base/function_ref.h"
 #include "base/text.h"

@@ -1,7 +1,6 @@
 #include "tess/trimmed/band_flipper.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "basis/exact_sign.h"
 

@@ -1,6 +1,5 @@
 #include "tess/trimmed/cut_patch.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

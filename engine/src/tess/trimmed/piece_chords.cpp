@@ -1,7 +1,6 @@
 #include "tess/trimmed/piece_chords.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 

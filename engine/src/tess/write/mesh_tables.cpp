@@ -1,7 +1,6 @@
 #include "tess/write/mesh_tables.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
