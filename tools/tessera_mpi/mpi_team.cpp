@@ -8,7 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "tessera/guard.h"
 #include "tessera/part_hits.h"
 
 namespace tessera::cli {

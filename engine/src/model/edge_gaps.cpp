@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/text.h"
 #include "model/coedge_parameter.h"
 #include "model/face_points.h"
 #include "tessera/guard.h"

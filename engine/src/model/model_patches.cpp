@@ -6,7 +6,6 @@
 
 #include "base/impl_access.h"
 #include "tessera/status.h"
-#include "trim/grid_loops.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

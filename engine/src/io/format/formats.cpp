@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "io/cad/cad_reader.h"
-#include "io/file/file.h"
 #include "io/file/gzip.h"
 #include "io/format/output_formats.h"
 #include "io/mesh/mesh_formats.h"

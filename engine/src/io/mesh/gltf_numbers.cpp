@@ -11,7 +11,6 @@
 
 #include "io/file/relative_path.h"
 #include "io/json/json_reader.h"
-#include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -17,7 +17,6 @@
 #include "io/file/output_file.h"
 #include "io/mesh/mesh_pieces.h"
 #include "io/mesh/packed_records.h"
-#include "io/mesh/valid_mesh.h"
 #include "tessera/guard.h"
 #include "tessera/status.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/aligned.h"
-#include "base/impl_access.h"
 #include "eval/uniform_grid.h"
 #include "ray/facet/facet_deviation.h"
 #include "ray/facet/facet_source.h"

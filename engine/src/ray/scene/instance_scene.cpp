@@ -9,7 +9,6 @@
 #include <string>
 
 #include "base/impl_access.h"
-#include "base/infinity.h"
 #include "ray/embree/embree_boxes.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/line/ray_lines.h"

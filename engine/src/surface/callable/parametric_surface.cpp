@@ -3,7 +3,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/text.h"
 #include "surface/callable/callables.h"
 #include "surface/callable/differences.h"
 #include "surface/net/checks.h"

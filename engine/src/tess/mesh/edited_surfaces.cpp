@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "base/text.h"
 #include "eval/touched_blocks.h"
-#include "parallel/parallel_for.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {

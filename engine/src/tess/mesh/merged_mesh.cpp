@@ -7,7 +7,6 @@
 #include "base/impl_access.h"
 #include "tess/edges/position_bits.h"
 #include "tess/write/mesh_views.h"
-#include "tess/write/vertex_views.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {

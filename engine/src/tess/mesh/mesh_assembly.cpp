@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "base/text.h"
 #include "tess/mesh/mesh_parts.h"
 #include "tessera/guard.h"
 

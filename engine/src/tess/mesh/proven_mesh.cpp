@@ -4,7 +4,6 @@
 
 #include "base/impl_access.h"
 #include "base/text.h"
-#include "eval/patch_edits.h"
 #include "kernel/table/kernel_table.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/impl_access.h"
 #include "tess/mesh/edited_surfaces.h"
 #include "tess/mesh/tessellation_impl.h"
 #include "tessera/guard.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "kernel/table/kernel_table.h"
 #include "tess/plan/ring_vertices.h"
 #include "tess/write/patch_writer.h"
 #include "tess/write/vertex_job.h"
