@@ -154,7 +154,7 @@ TEST(Engine, EveryIncludeStaysOnOrBelowItsFloor) {
   EXPECT_GT(checked, 30u) << "the tree was not found";
 }
 
-/// What only the project's own programs need of the engine, and no user.
+/// Internal headers for the project's own programs, which no user needs.
 const Names headers_for_tools{"io/file/output_file.h", "io/file/text_cursor.h", "io/format/output_formats.h",
                               "io/mesh/mesh_pieces.h", "mpi/mpi_ply.h"};
 
