@@ -153,6 +153,7 @@ std::uint64_t certified_hash(const tessera::PatchSet& set, double tolerance, Isa
   options.tolerance = tolerance;
   options.angle = 0.3;
   options.joining.weld = 1e-6;
+  options.parameters = tessera::VertexParameters::patch;
   options.isa = isa;
   const auto plan = value_of(tessera::Tessellation::make(set, options));
   tessera::Mesh out = value_of(plan.allocate());

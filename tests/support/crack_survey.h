@@ -157,7 +157,8 @@ inline bool is_folded(const PatchSet& set) {
 inline Result<CrackCount> count_cracks(const PatchSet& set, double relative, std::uint64_t max_triangles,
                                        bool fewest = false) {
   const double size = set.box().diagonal();
-  TessellationOptions options{.tolerance = relative * size, .max_triangles = max_triangles};
+  TessellationOptions options{
+      .tolerance = relative * size, .parameters = VertexParameters::patch, .max_triangles = max_triangles};
   options.fewest = fewest;
   Result<Tessellation> plan = Tessellation::make(set, options);
   CrackCount count;

@@ -40,8 +40,9 @@ struct Face {
         grid(value_of(to_bezier(surface))),
         set(value_of(make_patch_set(model))) {}
 
-  /// The mesh within a tolerance, whose bound is `bound`.
-  Mesh mesh(const TessellationOptions& options) {
+  /// The mesh within a tolerance, whose bound is `bound`, with parameters of patches unless others are asked for.
+  Mesh mesh(TessellationOptions options) {
+    if (!options.parameters && !options.joining.share_vertices) options.parameters = VertexParameters::patch;
     const Tessellation plan = value_of(Tessellation::make(set, options));
     bound = plan.bound();
     open_edges = plan.open_edges();

@@ -28,7 +28,7 @@ struct MeshCapacity {
 struct MeshViews {
   View3<float> position = {};             ///< relative to the origin of the patch set; required without model_position
   View3<float> normal = {};               ///< unit, or zero where undefined
-  View2<float> parameter = {};            ///< (u,v) of the patch, in [0,1]^2
+  View2<float> parameter = {};            ///< (u,v), see TessellationOptions::parameters
   std::span<std::uint32_t> patch = {};    ///< the patch of each triangle
   std::span<std::uint32_t> indices = {};  ///< three per triangle, counter-clockwise seen from where r_u x r_v points
   /// Four per quad, the same way around. Required by plans with quads, and must be empty for all others. With quads,

@@ -121,8 +121,8 @@ class RayScene {
   static Result<RayScene> make(const Model& model, const RaySceneOptions& options = {},
                                const Execution& execution = {});
 
-  /// Makes a scene in grid mode whose facets are the triangles and quads of a mesh of the set, such as one that keeps a
-  /// tolerance. Only the options `refine` and `isa` are used.
+  /// Makes a scene in grid mode whose facets are the triangles and quads of a mesh of the set with
+  /// VertexParameters::patch, such as one that keeps a tolerance. Only the options `refine` and `isa` are used.
   ///
   /// Errors: those of grid mode, and:
   /// - invalid_argument (no patch for each face, or no parameters for each vertex, as where vertices are shared;

@@ -45,6 +45,13 @@ struct UniformRates {
   int v = 8;  ///< segments along v of every patch, 1 to 4096
 };
 
+/// Which parameters the vertices of a mesh have, as texture coordinates for example.
+enum class VertexParameters : std::uint8_t {
+  surface,  ///< those of the surface: they run on from patch to patch of one surface (see PatchSource)
+  unit,     ///< those of the surface as shares of its domain: 0 to 1 from side to side
+  patch,    ///< those of the patch, 0 to 1
+};
+
 /// How the borders of patches and the edges of faces are joined.
 struct Joining {
   /// The largest distance of borders that are joined: 0 to a twentieth of the set's size. 0 joins only borders of the
@@ -66,8 +73,9 @@ struct Joining {
   /// patch has its own vertices, whose positions are the same bits.
   ///
   /// With a crease angle, vertices are shared where normals are joined. Without a crease angle, vertices are shared
-  /// everywhere and the mesh has no normals. A shared vertex has the parameters of its first patch, or of the
-  /// patch that the others are welded to.
+  /// everywhere and the mesh has no normals. The mesh has no parameters, unless TessellationOptions::parameters asks
+  /// for them: then vertices are shared only within a surface, and not across its seams, such as u = 0 and u = 1 of a
+  /// cylinder.
   bool share_vertices = false;
   /// Shapes: whether faces have the same vertices along their common edges, so that a closed shell has a closed mesh.
   bool close_edges = true;
@@ -78,8 +86,8 @@ struct Joining {
 /// How finely patches are divided, and how they are joined: either `rates`, or any of a distance (`tolerance` or
 /// `budget`), an angle and pixels.
 struct TessellationOptions {
-  /// Divides every patch at these rates, and proves nothing. Only `quads` and `isa` count beside it: a tolerance of any
-  /// kind is an error.
+  /// Divides every patch at these rates, and proves nothing. Only `parameters`, `quads` and `isa` count beside it: a
+  /// tolerance of any kind is an error.
   std::optional<UniformRates> rates = {};
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// this distance of the other.
@@ -105,6 +113,9 @@ struct TessellationOptions {
   /// suffices.
   std::optional<std::uint64_t> budget = {};
   Joining joining = {};  ///< how vertices of patches that meet become one
+  /// Which parameters vertices have. Empty: those of the surface; with share_vertices none. The parameters of patches
+  /// cannot be had with share_vertices.
+  std::optional<VertexParameters> parameters = {};
   /// The largest number of triangles; a mesh that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
   /// Looks for fewer triangles that keep a distance, and takes more time. It never adds triangles and saves a twentieth

@@ -32,7 +32,6 @@
 
 #include <stddef.h>
 #include <stdint.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -232,13 +231,16 @@ tsr_status tsr_set_evaluate(const tsr_set* set, const tsr_in* surface, const tsr
 typedef struct tsr_plan tsr_plan;
 
 enum {
-  TSR_PLAN_RELATIVE = 1,  /* the tolerance is a share of the set's size */
-  TSR_PLAN_SHARE = 2,     /* patches share the vertices of their borders by index */
-  TSR_PLAN_QUADS = 4,     /* whole cells are quads */
-  TSR_PLAN_FEWEST = 8,    /* look for fewer triangles, at a hundred times the time */
-  TSR_PLAN_SMALLEST = 16, /* the smallest tolerance for which max_triangles suffice */
-  TSR_PLAN_DOUBLE = 32,   /* positions in double */
-  TSR_PLAN_APART = 64     /* faces of shapes do not share vertices along edges */
+  TSR_PLAN_RELATIVE = 1,     /* the tolerance is a share of the set's size */
+  TSR_PLAN_SHARE = 2,        /* patches share the vertices of their borders by index */
+  TSR_PLAN_QUADS = 4,        /* whole cells are quads */
+  TSR_PLAN_FEWEST = 8,       /* look for fewer triangles, at a hundred times the time */
+  TSR_PLAN_SMALLEST = 16,    /* the smallest tolerance for which max_triangles suffice */
+  TSR_PLAN_DOUBLE = 32,      /* positions in double */
+  TSR_PLAN_APART = 64,       /* faces of shapes do not share vertices along edges */
+  TSR_PLAN_UV_SURFACE = 128, /* parameters of the surface: the default, but none with TSR_PLAN_SHARE */
+  TSR_PLAN_UV_UNIT = 256,    /* as shares of its domain */
+  TSR_PLAN_UV_PATCH = 512    /* of the patch: not with TSR_PLAN_SHARE */
 };
 /* At least one of tolerance, angle, pixels and TSR_PLAN_SMALLEST is needed, or rates alone. */
 typedef struct tsr_plan_options {
@@ -262,7 +264,6 @@ typedef struct tsr_plan_options {
 } tsr_plan_options;
 void tsr_plan_defaults(tsr_plan_options* options);
 tsr_status tsr_plan_new(tsr_plan** plan, const tsr_set* set, const tsr_plan_options* options, const tsr_run* run);
-
 typedef struct tsr_plan_info {
   size_t struct_size;
   uint64_t vertices, triangles, quads; /* of the mesh, exactly */
@@ -275,13 +276,12 @@ typedef struct tsr_plan_info {
   uint64_t crossed_patches; /* left out, since their loops are no polygon */
 } tsr_plan_info;
 tsr_status tsr_plan_describe(const tsr_plan* plan, tsr_plan_info* info);
-
 /* A mesh in the caller's memory. Null data: not wanted. */
 typedef struct tsr_mesh {
   size_t struct_size;
   tsr_out position;                       /* float, relative to the set's origin */
   tsr_out normal;                         /* float, unit */
-  tsr_out parameter;                      /* float, u and v of the patch */
+  tsr_out parameter;                      /* float, u and v: see TSR_PLAN_UV_SURFACE */
   tsr_out position_f64;                   /* double, in the model: with TSR_PLAN_DOUBLE */
   uint32_t *triangles, *triangle_patches; /* three vertices each, counter-clockwise; and the patch */
   uint32_t *quads, *quad_patches;         /* four each: with TSR_PLAN_QUADS */

@@ -314,8 +314,8 @@ std::size_t PatchSet::memory_bytes() const {
     return bytes(of.bernstein) + bytes(of.power) + bytes(of.bernstein_threshold) + bytes(of.power_threshold) +
            bytes(of.points) + bytes(of.point_threshold);
   };
-  std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->slots) +
-                      bytes(impl_->collapsed) + bytes(impl_->groups) + bytes(impl_->edited) +
+  std::size_t total = sizeof(Impl) + bytes(impl_->patches) + bytes(impl_->sources) + bytes(impl_->domains) +
+                      bytes(impl_->slots) + bytes(impl_->collapsed) + bytes(impl_->groups) + bytes(impl_->edited) +
                       bytes(impl_->lane_patches) + bytes(impl_->lane_counts) + all_bytes(impl_->f32) +
                       all_bytes(impl_->f64);
   if (const auto f32 = impl_->f32_points.load()) total += all_bytes(f32->coefficients);

@@ -88,6 +88,7 @@ class PatchSet::Impl {
   Vec3 origin;
   std::optional<Box3> given_box;  ///< PatchSetOptions::box
   std::size_t surface_count = 0;
+  std::vector<Domain> domains;              ///< `[surface]`; empty if the set was made of patches
   std::shared_ptr<const PatchTrims> trims;  ///< null if no patch is cut
   std::shared_ptr<const PatchEdges> edges;  ///< null if no face names edges
   std::vector<Status> trim_faults;          ///< one for each surface whose loops could not be used

@@ -13,7 +13,8 @@ Vec3 vector_of(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
 
 CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
   constexpr std::uint32_t known = TSR_PLAN_RELATIVE | TSR_PLAN_SHARE | TSR_PLAN_QUADS | TSR_PLAN_FEWEST |
-                                  TSR_PLAN_SMALLEST | TSR_PLAN_DOUBLE | TSR_PLAN_APART;
+                                  TSR_PLAN_SMALLEST | TSR_PLAN_DOUBLE | TSR_PLAN_APART | TSR_PLAN_UV_SURFACE |
+                                  TSR_PLAN_UV_UNIT | TSR_PLAN_UV_PATCH;
   if (from.flags & ~known) return bad("tsr_plan_options: flags has bits that mean nothing");
   const auto has = [&](std::uint32_t flag) { return (from.flags & flag) != 0; };
   if (from.rate_u != 0 || from.rate_v != 0) to.rates = UniformRates{from.rate_u, from.rate_v};
@@ -38,6 +39,9 @@ CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
   if (has(TSR_PLAN_DOUBLE)) to.precision = Precision::double_precision;
   to.spare = from.spare, to.max_triangles = from.max_triangles;
   if (has(TSR_PLAN_SMALLEST)) to.budget = from.max_triangles;
+  if (has(TSR_PLAN_UV_SURFACE)) to.parameters = VertexParameters::surface;
+  if (has(TSR_PLAN_UV_UNIT)) to.parameters = VertexParameters::unit;
+  if (has(TSR_PLAN_UV_PATCH)) to.parameters = VertexParameters::patch;
   return {};
 }
 

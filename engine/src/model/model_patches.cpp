@@ -51,6 +51,7 @@ Result<FaceTrims*> FaceTrimsFinder::find(const Shared<std::vector<TrimLoop>>& lo
 
 void GatheredPatches::add(std::size_t surface, PatchGrid grid) {
   const auto u = grid.breaks_u(), v = grid.breaks_v();
+  domains.push_back(grid.domain());
   box.extend(grid.box());
   note_error(grid.fit_error());
   std::vector<BezierPatch> added = std::move(grid).take_patches();
@@ -75,6 +76,7 @@ void GatheredPatches::add(std::size_t surface, PatchGrid grid) {
 
 void GatheredPatches::add_kept(std::size_t surface, const PatchGrid& grid, FaceTrims& face) {
   const std::vector<PatchUse>& uses = face.uses;
+  domains.push_back(grid.domain());
   note_error(grid.fit_error());
   surface_count = surface + 1;
   if (!face.index && std::ranges::find(uses, PatchUse::cut) != uses.end()) {
@@ -103,6 +105,7 @@ Result<PatchSet> GatheredPatches::packed(PatchSetOptions options) && {
   if (patches.empty() && surface_count > 0)
     return Status(StatusCode::invalid_argument, "trimming loops cut away every patch");
   Result<PatchSet> set = PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
+  if (set && domains.size() == set->surface_count()) impl_of(*set).domains = std::move(domains);
   if (!set || trims.cuts.empty()) return set;
   trims.is_cut.resize(set->patch_count());
   for (const PatchTrims::Cut& cut : trims.cuts) trims.is_cut[cut.patch] = 1;

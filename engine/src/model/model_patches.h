@@ -44,6 +44,7 @@ class FaceTrimsFinder {
 struct GatheredPatches {
   std::vector<BezierPatch> patches;
   std::vector<PatchSource> sources;
+  std::vector<Domain> domains;  ///< `[surface]`
   std::size_t surface_count = 0;
   Box3 box;
   FitError fit_error;

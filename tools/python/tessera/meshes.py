@@ -18,6 +18,7 @@ from .errors import ArgumentError, ArgumentTypeError, StateError
 from .view import MAX_TRIANGLES, html_of
 
 _RELATIVE, _SHARE, _QUADS, _FEWEST, _SMALLEST, _DOUBLE, _APART = (1 << k for k in range(7))
+_UV = {"surface": 128, "unit": 256, "patch": 512}
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,10 @@ def _fill(options: Any, wanted: dict[str, Any]) -> None:
         _DOUBLE: _is_double(wanted),
         _APART: not wanted.get("close_edges", True),
     }
+    if (uv := wanted.get("uv")) is not None:
+        if uv not in _UV:
+            raise ArgumentError(f"uv: expected one of {', '.join(map(repr, _UV))}, found {uv!r}")
+        flags[_UV[uv]] = True
     options.flags = sum(flag for flag, is_set in flags.items() if is_set)
     view = wanted.get("view")
     if wanted.get("pixels") is not None and view is None:
@@ -123,7 +128,8 @@ class Mesh:
 
     - ``vertices`` (n, 3): float32, relative to ``origin``; or float64, in the model
     - ``normals`` (n, 3): float32, unit; None if vertices are shared across creases
-    - ``uv`` (n, 2): float32, parameters of the patch
+    - ``uv`` (n, 2): float32, parameters of the surface, or as ``uv`` of tessellate() says; None if vertices are shared
+      without them
     - ``faces`` (m, 3), ``patches`` (m,): uint32, vertices counter-clockwise, and the patch of each triangle
     - ``quads`` (q, 4), ``quad_patches`` (q,): uint32
     - ``bound``: the proven distance between surfaces and mesh; ``gap``: how far faces fail to meet at edges of the
@@ -137,7 +143,7 @@ class Mesh:
 
     vertices: np.ndarray
     normals: np.ndarray | None
-    uv: np.ndarray
+    uv: np.ndarray | None
     faces: np.ndarray
     patches: np.ndarray
     quads: np.ndarray
@@ -181,7 +187,8 @@ class Mesh:
         self._float = self._records("float", info.vertices, 3, np.float32)
         self.vertices = self._records("double", info.vertices, 3, np.float64) if is_double else self._float
         self.normals = self._records("normals", info.vertices, 3, np.float32) if info.has_normals else None
-        self.uv = self._records("uv", info.vertices, 2, np.float32)
+        has_uv = self._wanted.get("uv") is not None or not self._wanted.get("share_vertices")
+        self.uv = self._records("uv", info.vertices, 2, np.float32) if has_uv else None
         self.faces = self._records("faces", info.triangles, 3, np.uint32)
         self.patches = self._records("patches", info.triangles, 1, np.uint32)
         self.quads = self._records("quads", info.quads, 4, np.uint32)
@@ -205,7 +212,8 @@ class Mesh:
         mesh.position = in_out(self._float)
         if self.normals is not None:
             mesh.normal = in_out(self.normals)
-        mesh.parameter = in_out(self.uv)
+        if self.uv is not None:
+            mesh.parameter = in_out(self.uv)
         if self.vertices is not self._float:
             mesh.position_f64 = in_out(self.vertices)
         mesh.triangles, mesh.triangle_patches = address_of(self.faces), address_of(self.patches)

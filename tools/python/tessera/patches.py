@@ -167,6 +167,7 @@ class PatchSetBase(Handle):
         max_gap: float | None = None,
         max_triangles: int | None = None,
         close_edges: bool = True,
+        uv: str | None = None,
         dtype: Any = np.float32,
         out: Mesh | None = None,
         progress: Progress | None = None,
@@ -181,6 +182,8 @@ class PatchSetBase(Handle):
         - ``quads``: whole cells are quads; ``share_vertices``: patches share vertices by index; ``fewest``: fewer
           triangles at a hundred times the time; ``weld``, ``crease_angle``, ``max_gap``, ``close_edges``: how patches
           and faces meet
+        - ``uv``: "surface" (default), "unit" or "patch": parameters of the surface, as shares of its domain, or of the
+          patch; with ``share_vertices`` none by default, and with "surface" or "unit" vertices are apart across seams
         - ``dtype=np.float64``: vertices in double, in the model
         - ``out``: an earlier mesh, to write into the same memory if it is large enough
         - ``progress``: called with a share from 0 to 1; an exception in it ends the call

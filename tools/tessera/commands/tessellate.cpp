@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* tessellate_footer =
     R"(The mesh has positions, normals and parameters (.stl: triangles only). .obj, .glb and .gltf have one part for each
-surface. Neighbours share their borders bit for bit. With --share-vertices they share vertices too; a shared
-vertex has the parameters of the first of its patches. Several models become one mesh, or one mesh each if the
+surface. Neighbours share their borders bit for bit. With --share-vertices they share vertices too. Texture
+coordinates are the surfaces' parameters, see --uv. Several models become one mesh, or one mesh each if the
 output is a folder (then as .ply) or contains {name}.
 Each shape of a CAD file is meshed once. .glb and .gltf have a node for each instance, with its name, place and
 colours, in metres; others have one mesh of all instances. --triangles and --pixels mesh all faces as one.

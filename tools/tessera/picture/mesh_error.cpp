@@ -13,8 +13,10 @@ namespace {
 constexpr std::size_t max_points = 500000;
 
 Result<Mesh> made(const PatchSet& set, double relative, MeshError& error) {
-  const Result<Tessellation> plan = Tessellation::make(
-      set, {.tolerance = relative, .relative = true, .joining = {.weld = 1e-6 * set.box().diagonal()}});
+  const Result<Tessellation> plan = Tessellation::make(set, {.tolerance = relative,
+                                                             .relative = true,
+                                                             .joining = {.weld = 1e-6 * set.box().diagonal()},
+                                                             .parameters = VertexParameters::patch});
   if (!plan) return plan.status();
   Result<Mesh> mesh = plan->allocate();
   if (!mesh) return mesh;

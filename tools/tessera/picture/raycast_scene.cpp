@@ -126,8 +126,9 @@ Result<RaycastScene> make_drawn_scene(Loaded loaded, const PatchSet& surfaces, c
   {
     const auto phase = timings.phase("mesh");
     Progress progress("meshing the surfaces");
-    const Result<Tessellation> plan =
-        Tessellation::make(surfaces, {.tolerance = share_of_size, .relative = true}, progress.execution());
+    const Result<Tessellation> plan = Tessellation::make(
+        surfaces, {.tolerance = share_of_size, .relative = true, .parameters = VertexParameters::patch},
+        progress.execution());
     if (!plan) return in_file(loaded.files[0], plan.status());
     Result<Mesh> mesh = plan->allocate();
     if (!mesh) return mesh.status();

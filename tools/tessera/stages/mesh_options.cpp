@@ -65,6 +65,18 @@ void add_sharing(Command& command, MeshOptions& options) {
       .exclude(grid);
 }
 
+void add_parameters(Command& command, MeshOptions& options) {
+  command.add_choice(
+      "--uv", {"surface", "unit", "patch"},
+      "Texture coordinates: parameters of the surface, or as shares of its domain, or of each patch, 0 to 1 "
+      "[surface; with --share-vertices none: there they keep vertices apart across seams and surfaces]",
+      [&options](const std::string& text) {
+        options.certified.parameters = text == "patch"  ? VertexParameters::patch
+                                       : text == "unit" ? VertexParameters::unit
+                                                        : VertexParameters::surface;
+      });
+}
+
 void add_precision(Command& command, MeshOptions& options) {
   command
       .add_choice("--precision", {"float", "double"},
@@ -160,6 +172,7 @@ void add_mesh_options(Command& command, MeshOptions& options) {
   add_memory(command, options);
   add_weld(command, options);
   add_sharing(command, options);
+  add_parameters(command, options);
   command.add_flag("--quads", "Write whole cells as quads, in .obj and .ply [triangles only]", options.quads);
   add_precision(command, options);
   command
@@ -172,7 +185,10 @@ void add_mesh_options(Command& command, MeshOptions& options) {
 }
 
 TessellationOptions plan_options(const MeshOptions& options) {
-  if (options.grid) return {.rates = UniformRates{options.grid->first, options.grid->second}, .quads = options.quads};
+  if (options.grid)
+    return {.rates = UniformRates{options.grid->first, options.grid->second},
+            .parameters = options.certified.parameters,
+            .quads = options.quads};
   TessellationOptions certified = options.certified;
   certified.quads = options.quads;
   if (options.pixels > 0) certified.pixels = PixelTolerance{options.pixels, options.view};

@@ -192,7 +192,8 @@ Status ProvenMesh::write_touched(const PatchSet::Impl& set, const MeshViews& out
   for (const std::uint32_t block : blocks)
     for_touched(block,
                 [&](std::uint32_t patch) { vertices += plan_.first_vertex(patch + 1) - plan_.first_vertex(patch); });
-  const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), out, execution.stores,
+  const ParameterMaps maps(set, VertexParameters::patch);  // updates write none
+  const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), maps, out, execution.stores,
                            sizeof(float) * vertices * (out.normal.empty() ? 3 : 6));
   const auto write_blocks = [&](std::size_t begin, std::size_t end) {
     VertexPass pass(writer);

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include "base/function_ref.h"
 #include "base/impl_access.h"
+#include "tess/cells/parameter_map.h"
 #include "tess/edges/position_bits.h"
 #include "tess/write/mesh_views.h"
 #include "tessera/status.h"
@@ -14,13 +18,15 @@ namespace {
 
 /// Numbers the distinct vertices, by a hash table with open addressing of the first vertex at each place.
 template <class T>
-void number(const std::vector<T>& positions, const std::vector<float>& normals, std::vector<std::uint32_t>& numbers,
+void number(const std::vector<T>& positions, const std::vector<float>& normals,
+            FunctionRef<bool(std::size_t, std::size_t)> have_same_parameters, std::vector<std::uint32_t>& numbers,
             std::vector<std::uint32_t>& sources) {
   const std::size_t count = positions.size() / 3;
   std::vector<std::uint32_t> table(std::bit_ceil(2 * count + 1), no_id);
   const auto is_same = [&](std::size_t a, std::size_t b) {
     return position_bits(&positions[3 * a]) == position_bits(&positions[3 * b]) &&
-           (normals.empty() || position_bits(&normals[3 * a]) == position_bits(&normals[3 * b]));
+           (normals.empty() || position_bits(&normals[3 * a]) == position_bits(&normals[3 * b])) &&
+           have_same_parameters(a, b);
   };
   numbers.resize(count);
   sources.clear();
@@ -43,7 +49,7 @@ Result<std::unique_ptr<Tessellation::Impl>> MergedMesh::make(const PatchSet& set
                                                              const Execution& execution) {
   Result<std::unique_ptr<ProvenMesh>> own = ProvenMesh::make(set, options, nullptr, execution);
   if (!own) return own.status();
-  std::unique_ptr<MergedMesh> mesh(new MergedMesh(*std::move(own), options.joining.crease_angle.has_value()));
+  std::unique_ptr<MergedMesh> mesh(new MergedMesh(*std::move(own), options));
   if (Status status = mesh->find(set, {.cancel = execution.cancel}); !status.ok()) return status;
   return std::unique_ptr<Tessellation::Impl>(std::move(mesh));
 }
@@ -51,17 +57,37 @@ Result<std::unique_ptr<Tessellation::Impl>> MergedMesh::make(const PatchSet& set
 Status MergedMesh::find(const PatchSet& set, const Execution& execution) {
   Mesh all = own_->allocate();
   if (Status status = own_->run(set, all.views(), execution); !status.ok()) return status;
-  (void)renumber(all);
+  (void)renumber(set, all);
   return {};
 }
 
-bool MergedMesh::renumber(const Mesh& all) {
+std::vector<MergedMesh::Origin> MergedMesh::origins(const PatchSet& set) const {
+  std::vector<Origin> origins;
+  if (!parameters_) return origins;
+  const ParameterMaps maps(impl_of(set), *parameters_);
+  for (std::size_t patch = 0; patch < set.patch_count(); ++patch) {
+    const Domain of = maps.of(patch).to;
+    origins.resize(own_->before(patch + 1).vertices, {set.source(patch).surface, of.u1 - of.u0, of.v1 - of.v0});
+  }
+  return origins;
+}
+
+bool MergedMesh::renumber(const PatchSet& set, const Mesh& all) {
   const std::vector<float>& normals = has_normals_ ? all.normals : no_normals_;
   std::vector<std::uint32_t> numbers, sources;
+  const std::vector<Origin> from = origins(set);
+  const auto have_same_parameters = [&](std::size_t a, std::size_t b) {
+    constexpr double near = 0x1p-16;  // of a patch: above the rounding of floats, far below a segment
+    const auto apart = [&](std::size_t c) {
+      return std::abs(double(all.parameters[2 * a + c]) - double(all.parameters[2 * b + c]));
+    };
+    return !parameters_ || (from[a].surface == from[b].surface && apart(0) <= near * std::min(from[a].u, from[b].u) &&
+                            apart(1) <= near * std::min(from[a].v, from[b].v));
+  };
   if (all.model_positions.empty())
-    number(all.positions, normals, numbers, sources);
+    number(all.positions, normals, have_same_parameters, numbers, sources);
   else
-    number(all.model_positions, normals, numbers, sources);
+    number(all.model_positions, normals, have_same_parameters, numbers, sources);
   const bool is_same = numbers == numbers_;
   numbers_ = std::move(numbers);
   sources_ = std::move(sources);
@@ -82,17 +108,21 @@ Mesh MergedMesh::allocate() const {
   if (!mesh.model_positions.empty()) mesh.model_positions.resize(3 * sources_.size());
   if (!mesh.parameters.empty()) mesh.parameters.resize(2 * sources_.size());
   if (!has_normals_) mesh.normals.clear();
+  if (!parameters_) mesh.parameters.clear();
   return mesh;
 }
 
 Status MergedMesh::check(const MeshViews& out) const {
   if (Status status = check_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
-  return check_normals(out);
+  return check_attributes(out);
 }
 
-Status MergedMesh::check_normals(const MeshViews& out) const {
+Status MergedMesh::check_attributes(const MeshViews& out) const {
   if (!out.normal.empty() && !has_normals_)
     return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
+  if (!out.parameter.empty() && !parameters_)
+    return {StatusCode::invalid_argument,
+            "the plan has no parameters of shared vertices: ask for them when it is made"};
   return {};
 }
 
@@ -138,7 +168,7 @@ Result<MeshChange> MergedMesh::update(PatchSet& set, const PatchEdits& edits, co
                                       const Execution& execution) {
   if (!is_stale_)
     if (Status status = check_updated_views(out, capacity(), own_->has_f64_positions()); !status.ok()) return status;
-  if (Status status = check_normals(out); !status.ok()) return status;
+  if (Status status = check_attributes(out); !status.ok()) return status;
   Mesh all = own_->allocate();
   const bool was_stale = std::exchange(is_stale_, true);
   Result<MeshChange> change = own_->update(set, edits, all.views(), execution);
@@ -149,7 +179,7 @@ Result<MeshChange> MergedMesh::update(PatchSet& set, const PatchEdits& edits, co
   if (change->topology || was_stale) {
     change->topology = true;
     if (Status status = find(set, {.cancel = execution.cancel}); !status.ok()) return status;
-  } else if (renumber(all)) {
+  } else if (renumber(set, all)) {
     gather(all.views(), out);
   } else {
     *change = {true, std::max<std::size_t>(change->patches, 1)};

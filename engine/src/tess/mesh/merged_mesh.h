@@ -2,15 +2,17 @@
 // Shares the vertices of trimmed sets and of shapes by index.
 
 #include <memory>
+#include <optional>
 
 #include "tess/mesh/proven_mesh.h"
 #include "tess/mesh/tessellation_impl.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// A mesh whose vertices at one place are one. With normals, those of one normal.
+/// A mesh whose vertices at one place are one. With normals, those of one normal; with parameters, those of one surface
+/// and of the same parameters.
 ///
-/// A vertex has the parameters of the patch that comes first. Memory: 8 bytes per vertex of the patches, and these
+/// Memory: 8 bytes per vertex of the patches, and these
 /// vertices themselves while the mesh is made or written.
 class MergedMesh final : public Tessellation::Impl {
  public:
@@ -27,19 +29,29 @@ class MergedMesh final : public Tessellation::Impl {
                             const Execution& execution) override;
 
  private:
-  MergedMesh(std::unique_ptr<ProvenMesh> own, bool has_normals) : own_(std::move(own)), has_normals_(has_normals) {}
+  /// Where a vertex of a patch comes from: the surface, and how far parameters reach over the patch.
+  struct Origin {
+    std::uint32_t surface;
+    double u, v;
+  };
+
+  MergedMesh(std::unique_ptr<ProvenMesh> own, const TessellationOptions& options)
+      : own_(std::move(own)), has_normals_(options.joining.crease_angle.has_value()), parameters_(options.parameters) {}
   Status find(const PatchSet& set, const Execution& execution);
+  /// Returns the origin of each vertex of a patch; none without parameters.
+  std::vector<Origin> origins(const PatchSet& set) const;
   /// Numbers the vertices of a whole mesh anew. Returns whether the numbers are as before.
-  bool renumber(const Mesh& all);
+  bool renumber(const PatchSet& set, const Mesh& all);
   Status check(const MeshViews& out) const;
-  Status check_normals(const MeshViews& out) const;
+  Status check_attributes(const MeshViews& out) const;
   /// Makes memory for the patches' own vertices; triangles go to `out` at once.
   MeshViews views_for(const MeshViews& out, Mesh& own) const;
   void gather(const MeshViews& own, const MeshViews& out) const;
 
   std::unique_ptr<ProvenMesh> own_;
   bool has_normals_;
-  bool is_stale_ = false;  ///< an update has failed after it changed the plan
+  std::optional<VertexParameters> parameters_;  ///< vertices that have other ones are apart
+  bool is_stale_ = false;                       ///< an update has failed after it changed the plan
   std::vector<float> no_normals_ = {};
   std::vector<std::uint32_t> numbers_;  ///< by vertex of a patch: that of the merged mesh
   std::vector<std::uint32_t> sources_;  ///< by vertex of the merged mesh: the first of a patch

@@ -160,20 +160,23 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
 
 Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution) {
   if (!options_.joining.crease_angle && !options_.joining.share_vertices) return {};
+  const ParameterMaps maps(set, parameters());
   Mesh mesh;  // written while each patch still has its own vertices
   MeshViews views;
   if (options_.joining.crease_angle) {
     mesh = empty_mesh(plan_.capacity(), origin_);
     views = mesh.views();
-    const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), views, Stores::plain);
+    views.parameter = {};
+    const PatchWriter writer(set, plan_, *tables_, kernel::kernels(isa_), maps, views, Stores::plain);
     const Execution quiet{.cancel = execution.cancel};
     const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
     Status status = parallel_for(plan_.patch_count(), written_per_task(plan_), quiet, write);
     if (status.ok()) status = write_welded(weld_, plan_, set, views, quiet, [](std::size_t) { return true; });
     if (!status.ok()) return status;
   }
+  const bool splits = options_.joining.share_vertices && has_parameters();
   joins_ = find_joins(set, plan_, facts.borders.edges(), weld_, options_.joining.crease_angle ? &views.normal : nullptr,
-                      options_.joining.crease_angle.value_or(0));
+                      options_.joining.crease_angle.value_or(0), splits ? &maps : nullptr);
   if (!options_.joining.share_vertices) return {};
   plan_.share(joins_);
   weld_shared_corners();
@@ -201,6 +204,7 @@ void ProvenMesh::weld_shared_corners() {
 Mesh ProvenMesh::allocate() const {
   Mesh mesh = empty_mesh(capacity(), origin_);
   if (!has_normals()) mesh.normals.clear();
+  if (!has_parameters()) mesh.parameters.clear();
   if (plan_.patches().has_f64_positions) mesh.model_positions.resize(mesh.positions.size());
   return mesh;
 }
@@ -208,6 +212,9 @@ Mesh ProvenMesh::allocate() const {
 Status ProvenMesh::check_attributes(const MeshViews& out) const {
   if (!out.normal.empty() && !has_normals())
     return {StatusCode::invalid_argument, "normals of shared vertices need a crease angle"};
+  if (!out.parameter.empty() && !has_parameters())
+    return {StatusCode::invalid_argument,
+            "the plan has no parameters of shared vertices: ask for them when it is made"};
   return options_.quads ? Status() : check_no_quads(out);
 }
 
@@ -222,7 +229,8 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   if (Status status = check_views(out, capacity(), plan_.patches().has_f64_positions); !status.ok()) return status;
   if (Status status = check_attributes(out); !status.ok()) return status;
   if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
-  const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), out, execution.stores);
+  const ParameterMaps maps(impl_of(set), parameters());
+  const PatchWriter writer(impl_of(set), plan_, *tables_, kernel::kernels(isa_), maps, out, execution.stores);
   const auto write = [&](std::size_t begin, std::size_t end) { writer.write(begin, end); };
   if (Status status = parallel_for(plan_.patch_count(), written_per_task(plan_), execution, write); !status.ok())
     return status;
@@ -232,9 +240,10 @@ Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Executio
   }
   if (Status status = write_copies(impl_of(set), out, execution, [](std::size_t) { return true; }); !status.ok())
     return status;
-  if (Status status = write_cut(impl_of(set), plan_, options_.joining.crease_angle, out, execution); !status.ok())
+  if (Status status = write_cut(impl_of(set), plan_, options_.joining.crease_angle, maps, out, execution); !status.ok())
     return status;
-  return plan_.closed() ? write_closed(impl_of(set), plan_, options_.joining.crease_angle, out, execution) : Status();
+  return plan_.closed() ? write_closed(impl_of(set), plan_, options_.joining.crease_angle, maps, out, execution)
+                        : Status();
 }
 
 }}  // namespace tessera::abi_0_1

@@ -47,7 +47,9 @@ class ProvenMesh final : public Tessellation::Impl {
              const PlanFacts& facts, Isa isa);
 
   bool has_normals() const { return !options_.joining.share_vertices || options_.joining.crease_angle; }
-  /// Checks that normals and quads are only written if there are any. Errors: invalid_argument.
+  bool has_parameters() const { return !options_.joining.share_vertices || options_.parameters; }
+  VertexParameters parameters() const { return options_.parameters.value_or(VertexParameters::surface); }
+  /// Checks that normals, parameters and quads are only written if there are any. Errors: invalid_argument.
   Status check_attributes(const MeshViews& out) const;
   /// Finds what neighbours share, if anything. Errors: cancelled.
   Status join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution);

@@ -63,6 +63,8 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
                std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
+  if (options.joining.share_vertices && options.parameters == VertexParameters::patch)
+    return bad("parameters of patches differ wherever patches meet, so no vertex could be shared: choose one of both");
   if (Status status = check_joining(options.joining, set); !status.ok()) return status;
   PlannerOptions planner;
   planner.closes_edges = options.joining.close_edges;

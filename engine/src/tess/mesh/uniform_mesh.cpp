@@ -13,6 +13,7 @@
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tess/bounds/task_size.h"
+#include "tess/cells/parameter_map.h"
 #include "tess/cells/patch_triangles.h"
 #include "tess/cells/segments.h"
 #include "tess/mesh/tessellation_impl.h"
@@ -57,16 +58,17 @@ QuantityViews<float> vertex_views(const MeshViews& out) {
 /// A plan from rates. Layout of the vertices: `[patch][iu][iv]`.
 class UniformMesh final : public Tessellation::Impl {
  public:
-  UniformMesh(const PatchSet& set, UniformGrid grid, bool quads)
+  UniformMesh(const PatchSet& set, UniformGrid grid, const TessellationOptions& options)
       : grid_(std::move(grid)),
         rates_{grid_.rate_u(), grid_.rate_v()},
-        quads_(quads),
+        quads_(options.quads),
+        parameters_(options.parameters.value_or(VertexParameters::surface)),
         u_(parameters(rates_.u)),
         v_(parameters(rates_.v)),
         origin_(set.origin()),
         shapes_(set.patch_count()),
         first_triangle_(set.patch_count() + 1),
-        first_quad_(quads ? set.patch_count() + 1 : 0),
+        first_quad_(options.quads ? set.patch_count() + 1 : 0),
         revision_(set.revision()) {
     (void)lay_out(impl_of(set));
   }
@@ -84,7 +86,7 @@ class UniformMesh final : public Tessellation::Impl {
     if (Status status = check_shapes(set, shapes_); !status.ok()) return status;
     CallProgress progress(execution, progress_ends);
     if (Status status = grid_.run(set, vertex_views(out), progress.loops()); !status.ok()) return status;
-    return progress.finish(write_rest(out, progress.loops()));
+    return progress.finish(write_rest(impl_of(set), out, progress.loops()));
   }
 
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
@@ -146,13 +148,14 @@ class UniformMesh final : public Tessellation::Impl {
   }
 
   /// Writes parameters, indices and patch numbers.
-  Status write_rest(const MeshViews& out, const Execution& execution) const {
+  Status write_rest(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution) const {
+    const ParameterMaps maps(set, parameters_);
     ExecutionReport report;
     Execution part{.cancel = execution.cancel, .progress = {}, .stores = execution.stores, .report = &report};
     if (execution.progress) part.progress = [&](double done) { execution.progress(done); };
     Status status = parallel_for(shapes_.size(), patches_per_task, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        if (!out.parameter.empty()) write_parameters(k, out.parameter);
+        if (!out.parameter.empty()) write_parameters(k, maps.of(k), out.parameter);
         write_faces(k, out);
       }
     });
@@ -180,18 +183,19 @@ class UniformMesh final : public Tessellation::Impl {
     return first_triangle_[patch] - (quads_ ? 2 * first_quad_[patch] : 0);
   }
 
-  void write_parameters(std::size_t patch, const View2<float>& view) const {
+  void write_parameters(std::size_t patch, const ParameterMap& map, const View2<float>& view) const {
     std::size_t vertex = patch * rates_.vertices();
-    for (const float u : u_)
-      for (const float v : v_) {
-        view.at(vertex, 0) = u;
-        view.at(vertex++, 1) = v;
-      }
+    const auto write = [&](auto put) {
+      for (const float u : u_)
+        for (const float v : v_) put(vertex++, u, v);
+    };
+    map.with_put(view, write);
   }
 
   UniformGrid grid_;
   Rates rates_;
   bool quads_;
+  VertexParameters parameters_;
   std::vector<float> u_, v_;
   Vec3 origin_;
   std::vector<PatchShape> shapes_;
@@ -216,7 +220,7 @@ Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& se
   if (Status status = check_vertices(set.patch_count(), {rates.u, rates.v}); !status.ok()) return status;
   Result<UniformGrid> grid = UniformGrid::make(set, rates.u, rates.v, options.isa);
   if (!grid) return grid.status();
-  return std::unique_ptr<Tessellation::Impl>(std::make_unique<UniformMesh>(set, *std::move(grid), options.quads));
+  return std::unique_ptr<Tessellation::Impl>(std::make_unique<UniformMesh>(set, *std::move(grid), options));
 }
 
 }}  // namespace tessera::abi_0_1

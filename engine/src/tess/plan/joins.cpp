@@ -14,11 +14,12 @@ constexpr double normal_rounding = 1e-5;
 class Joiner {
  public:
   Joiner(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges, const VertexCopies& weld,
-         const View3<float>* normals, double angle)
+         const View3<float>* normals, double angle, const ParameterMaps* maps)
       : set_(set),
         plan_(plan),
         edges_(edges),
         normals_(normals),
+        maps_(maps),
         apart_(2 * std::sin(angle / 2) + normal_rounding),
         welded_(4 * plan.patch_count(), no_id),
         is_moved_(4 * plan.patch_count(), 0),
@@ -39,16 +40,28 @@ class Joiner {
   }
 
   void join_borders(const VertexCopies& weld) {
-    std::vector<std::uint32_t> leading(edges_.count(), no_id);
+    std::vector<std::uint32_t> leading(edges_.count(), no_id);           // the first border of each edge
+    std::vector<std::uint32_t> next(maps_ ? welded_.size() : 0, no_id);  // the next one with other parameters
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (edge != no_id && leading[edge] == no_id && welded_[border] == no_id) leading[edge] = border;
+      if (edge == no_id || welded_[border] != no_id) return;
+      std::uint32_t* lead = &leading[edge];
+      while (*lead != no_id && maps_ && !has_same_parameters(border, *lead, runs_against(set_, border, *lead)))
+        lead = &next[*lead];
+      if (*lead == no_id) *lead = border;
     });
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (edge == no_id || leading[edge] == border) return;
-      const std::uint32_t weld_at = welded_[border],
-                          lead = weld_at == no_id ? leading[edge] : weld.borders[weld_at].from;
-      const bool reversed = weld_at == no_id ? runs_against(set_, border, lead) : weld.borders[weld_at].reversed;
-      if (!is_smooth(border, lead, reversed)) return;
+      if (edge == no_id) return;
+      const std::uint32_t weld_at = welded_[border];
+      std::uint32_t lead = weld_at == no_id ? leading[edge] : weld.borders[weld_at].from;
+      const auto is_reversed = [&] {
+        return weld_at == no_id ? runs_against(set_, border, lead) : weld.borders[weld_at].reversed;
+      };
+      while (maps_ && lead != border && !has_same_parameters(border, lead, is_reversed())) {
+        if (weld_at != no_id || next[lead] == no_id) return;
+        lead = next[lead];
+      }
+      if (lead == border || !is_smooth(border, lead, is_reversed())) return;
+      const bool reversed = is_reversed();
       joins_.borders.push_back({border, lead, reversed});
       const auto ends = ends_of(border), met = ends_of(lead);
       corners_.unite(ends[0], met[reversed ? 1 : 0]);
@@ -59,10 +72,11 @@ class Joiner {
   void join_poles() {
     for_borders([&](std::uint32_t border, std::uint32_t) {
       if (!plan_.division(border / 4).collapsed.has(all_sides[border % 4])) return;
+      const auto ends = ends_of(border);
+      if (!has_same_parameters(ends[0], ends[1])) return;
       const RingVertices ring(plan_, border);
       for (int k = 1; k <= ring.rate(); ++k)
         if (!agree(ring(k), ring(0))) return;
-      const auto ends = ends_of(border);
       corners_.unite(ends[0], ends[1]);
       joins_.poles.push_back({border, border});
     });
@@ -83,6 +97,17 @@ class Joiner {
     for (VertexCopies::Corner& pole : joins_.poles) pole.from = owner_of(pole.to);
   }
 
+  bool has_same_parameters(std::uint32_t border, std::uint32_t lead, bool reversed) const {
+    const auto ends = ends_of(border), met = ends_of(lead);
+    return has_same_parameters(ends[0], met[reversed ? 1 : 0]) && has_same_parameters(ends[1], met[reversed ? 0 : 1]);
+  }
+  bool has_same_parameters(std::uint32_t corner, std::uint32_t other) const {
+    const auto at = [](std::uint32_t k) {
+      constexpr ParameterPoint corners[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+      return corners[k % 4];
+    };
+    return !maps_ || maps_->agree(corner / 4, at(corner), other / 4, at(other));
+  }
   bool is_smooth(std::uint32_t border, std::uint32_t lead, bool reversed) const {
     if (!normals_) return true;
     const RingVertices to(plan_, border), from(plan_, lead);
@@ -105,6 +130,7 @@ class Joiner {
   const CertifiedPlan& plan_;
   const SharedEdges& edges_;
   const View3<float>* normals_;
+  const ParameterMaps* maps_;           ///< null if vertices may have different parameters
   double apart_;                        ///< how far the tips of two normals may lie apart
   std::vector<std::uint32_t> welded_;   ///< `[border]`: its place in the weld's list, or none
   std::vector<std::uint8_t> is_moved_;  ///< `[corner]`: whether it takes the point of another by welding
@@ -115,8 +141,9 @@ class Joiner {
 }  // namespace
 
 VertexCopies find_joins(const PatchSet::Impl& set, const CertifiedPlan& plan, const SharedEdges& edges,
-                        const VertexCopies& weld, const View3<float>* normals, double angle) {
-  return Joiner(set, plan, edges, weld, normals, angle).take();
+                        const VertexCopies& weld, const View3<float>* normals, double angle,
+                        const ParameterMaps* maps) {
+  return Joiner(set, plan, edges, weld, normals, angle, maps).take();
 }
 
 }}  // namespace tessera::abi_0_1

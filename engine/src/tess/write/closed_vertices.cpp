@@ -15,10 +15,11 @@ constexpr std::size_t edited_patches_per_task = 16, places_per_task = 512;
 class ClosedWriter {
  public:
   ClosedWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
-               const MeshViews& out)
+               const ParameterMaps& maps, const MeshViews& out)
       : set_(set),
         plan_(plan),
         closed_(*plan.closed()),
+        maps_(maps),
         out_(out),
         apart_(crease_angle ? 2 * std::sin(*crease_angle / 2) : -1) {}
 
@@ -31,10 +32,8 @@ class ClosedWriter {
       const std::size_t vertex = first + own + k;
       put(vertex, points.at(at));
       if (!out_.normal.empty()) put_vector(out_.normal, vertex, points.normal(at));
-      if (!out_.parameter.empty()) {
-        out_.parameter.at(vertex, 0) = static_cast<float>(at.u);
-        out_.parameter.at(vertex, 1) = static_cast<float>(at.v);
-      }
+      if (!out_.parameter.empty())
+        maps_.of(edit.patch).put(out_.parameter, vertex, static_cast<float>(at.u), static_cast<float>(at.v));
     }
     const bool quads = !out_.quads.empty();
     const std::size_t begin = quads ? plan_.first_strip(edit.patch) : plan_.first_triangle(edit.patch);
@@ -93,6 +92,7 @@ class ClosedWriter {
   const PatchSet::Impl& set_;
   const CertifiedPlan& plan_;
   const ClosedEdges& closed_;
+  const ParameterMaps& maps_;
   const MeshViews& out_;
   double apart_;  ///< how far the tips of joined normals may lie apart
 };
@@ -100,8 +100,8 @@ class ClosedWriter {
 }  // namespace
 
 Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
-                    const MeshViews& out, const Execution& execution) {
-  const ClosedWriter writer(set, plan, crease_angle, out);
+                    const ParameterMaps& maps, const MeshViews& out, const Execution& execution) {
+  const ClosedWriter writer(set, plan, crease_angle, maps, out);
   const ClosedEdges& closed = *plan.closed();
   const Execution quiet{.cancel = execution.cancel};
   const auto write = [&](std::size_t begin, std::size_t end) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "tess/cells/parameter_map.h"
 #include "tess/plan/certified_plan.h"
 #include "tessera/execution.h"
 #include "tessera/mesh.h"
@@ -13,6 +14,6 @@ namespace tessera { inline namespace abi_0_1 {
 /// edges, and common normals where these lie within `crease_angle`. All patches must have been written. Errors:
 /// cancelled.
 Status write_closed(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
-                    const MeshViews& out, const Execution& execution);
+                    const ParameterMaps& maps, const MeshViews& out, const Execution& execution);
 
 }}  // namespace tessera::abi_0_1

@@ -16,8 +16,8 @@ constexpr std::size_t cut_patches_per_task = 4;
 class CutWriter {
  public:
   CutWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
-            const MeshViews& out)
-      : set_(set), plan_(plan), out_(out) {
+            const ParameterMaps& maps, const MeshViews& out)
+      : set_(set), plan_(plan), maps_(maps), out_(out) {
     if (crease_angle) apart_ = 2 * std::sin(*crease_angle / 2);
   }
 
@@ -59,10 +59,8 @@ class CutWriter {
       if (!out_.position.empty()) put_vector(out_.position, vertex, p);
       if (!out_.model_position.empty()) put_vector(out_.model_position, vertex, set_.origin + p);
       if (!out_.normal.empty()) put_vector(out_.normal, vertex, points.normal(at));
-      if (!out_.parameter.empty()) {
-        out_.parameter.at(vertex, 0) = static_cast<float>(at.u);
-        out_.parameter.at(vertex, 1) = static_cast<float>(at.v);
-      }
+      if (!out_.parameter.empty())
+        maps_.of(cut.patch).put(out_.parameter, vertex, static_cast<float>(at.u), static_cast<float>(at.v));
       ++vertex;
     }
   }
@@ -91,6 +89,7 @@ class CutWriter {
 
   const PatchSet::Impl& set_;
   const CertifiedPlan& plan_;
+  const ParameterMaps& maps_;
   const MeshViews& out_;
   double apart_ = 0;  ///< how far the tips of joined normals may lie apart
 };
@@ -98,8 +97,8 @@ class CutWriter {
 }  // namespace
 
 Status write_cut(const PatchSet::Impl& set, const CertifiedPlan& plan, std::optional<double> crease_angle,
-                 const MeshViews& out, const Execution& execution) {
-  const CutWriter writer(set, plan, crease_angle, out);
+                 const ParameterMaps& maps, const MeshViews& out, const Execution& execution) {
+  const CutWriter writer(set, plan, crease_angle, maps, out);
   const auto write = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) writer.write(plan.cuts()[c]);
   };

@@ -25,9 +25,9 @@ kernel::StreamState lines_from(std::uint32_t* index) { return stream_from(reinte
 }  // namespace
 
 PatchWriter::PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
-                         const kernel::KernelTable& kernels, const MeshViews& out, Stores stores,
-                         std::optional<std::size_t> bytes)
-    : set_(set), plan_(plan), tables_(tables), kernels_(kernels), out_(out) {
+                         const kernel::KernelTable& kernels, const ParameterMaps& maps, const MeshViews& out,
+                         Stores stores, std::optional<std::size_t> bytes)
+    : set_(set), plan_(plan), tables_(tables), kernels_(kernels), maps_(maps), out_(out) {
   const MeshCapacity size = plan.capacity();
   if (!bytes)
     bytes = sizeof(float) * size.vertices * (out.normal.empty() ? 3 : 6) + 3 * sizeof(std::uint32_t) * size.triangles;
@@ -177,23 +177,23 @@ void PatchWriter::prepare_weights(std::size_t k, const BlockGroup& group, const 
 void PatchWriter::write_parameters(std::size_t k) const {
   const Division& division = plan_.division(k);
   std::size_t vertex = plan_.first_vertex(k);
-  const auto put = [&](float u, float v) {
-    out_.parameter.at(vertex, 0) = u;
-    out_.parameter.at(vertex++, 1) = v;
-  };
-  const float *inner_u = tables_.parameters(division.inner.u), *inner_v = tables_.parameters(division.inner.v);
-  for (int iu = 1; iu < division.inner.u.rate(); ++iu)
-    for (int iv = 1; iv < division.inner.v.rate(); ++iv) put(inner_u[iu], inner_v[iv]);
-  for (const Side side : all_sides) {
-    const auto s = static_cast<std::size_t>(side);
-    const float* along = tables_.parameters(division.border[s]);
-    const int rate = division.border[s].rate(), last = plan_.owns_border(4 * k + s) ? rate : 1;
-    for (int n = plan_.owns_corner(4 * k + s) ? 0 : 1; n < last; ++n) {
-      const float t = along[is_backward(side) ? rate - n : n];
-      const float across = is_far(side);
-      runs_along_u(side) ? put(t, across) : put(across, t);
+  const auto write = [&](auto put_at) {
+    const auto put = [&](float u, float v) { put_at(vertex++, u, v); };
+    const float *inner_u = tables_.parameters(division.inner.u), *inner_v = tables_.parameters(division.inner.v);
+    for (int iu = 1; iu < division.inner.u.rate(); ++iu)
+      for (int iv = 1; iv < division.inner.v.rate(); ++iv) put(inner_u[iu], inner_v[iv]);
+    for (const Side side : all_sides) {
+      const auto s = static_cast<std::size_t>(side);
+      const float* along = tables_.parameters(division.border[s]);
+      const int rate = division.border[s].rate(), last = plan_.owns_border(4 * k + s) ? rate : 1;
+      for (int n = plan_.owns_corner(4 * k + s) ? 0 : 1; n < last; ++n) {
+        const float t = along[is_backward(side) ? rate - n : n];
+        const float across = is_far(side);
+        runs_along_u(side) ? put(t, across) : put(across, t);
+      }
     }
-  }
+  };
+  maps_.of(k).with_put(out_.parameter, write);
 }
 
 void PatchWriter::write_triangles(std::size_t k, std::uint32_t* out, std::uint32_t* end,

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "block/patch_set_impl.h"
+#include "tess/cells/parameter_map.h"
 #include "tess/plan/certified_plan.h"
 #include "tess/write/mesh_tables.h"
 #include "tessera/execution.h"
@@ -25,7 +26,7 @@ class PatchWriter {
  public:
   /// `bytes`: how much will be written, if not the whole mesh.
   PatchWriter(const PatchSet::Impl& set, const CertifiedPlan& plan, const MeshTables& tables,
-              const kernel::KernelTable& kernels, const MeshViews& out, Stores stores,
+              const kernel::KernelTable& kernels, const ParameterMaps& maps, const MeshViews& out, Stores stores,
               std::optional<std::size_t> bytes = {});
 
   bool streaming() const { return streaming_; }
@@ -61,6 +62,7 @@ class PatchWriter {
   const CertifiedPlan& plan_;
   const MeshTables& tables_;
   const kernel::KernelTable& kernels_;
+  const ParameterMaps& maps_;
   const MeshViews& out_;
   bool streaming_;
 };
