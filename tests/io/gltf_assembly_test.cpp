@@ -182,7 +182,8 @@ TEST_P(GltfAssembly, EveryCornerIsReadBackWhereItStands) {
        {std::pair{"", 1.0}, {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}, {"in", 0.0254}}) {
     assembly.unit = unit;
     const tinygltf::Model model = written(assembly);
-    EXPECT_EQ(model.nodes.at(0).scale, metre == 1 ? std::vector<double>{} : std::vector<double>(3, metre));
+    EXPECT_EQ(model.nodes.at(0).matrix,
+              (std::vector<double>{metre, 0, 0, 0, 0, 0, -metre, 0, 0, metre, 0, 0, 0, 0, 0, 1}));
     EXPECT_EQ(model.nodes.at(1).translation, (std::vector<double>{10, 20, 30}));
     EXPECT_EQ(model.nodes.at(2).matrix.size(), 16u);
     EXPECT_TRUE(model.nodes.at(4).matrix.empty());  // its mesh is sheared instead

@@ -63,7 +63,7 @@ class GltfReading : public testing::Test {
 
   Result<Mesh> read(const json& file) {
     warnings_.clear();
-    return parse_gltf(file.dump(), folder_ / "m.gltf", {.warnings = &warnings_});
+    return parse_gltf(file.dump(), folder_ / "m.gltf", {.up = UpAxis::y, .warnings = &warnings_});
   }
   Mesh mesh_of(const json& file) { return test::value_of(read(file)); }
   /// Expects that the message is "m.gltf:1: " and then these words.
@@ -142,7 +142,7 @@ TEST_F(GltfReading, FilesOfTinygltfAreReadInEveryForm) {
   for (const Form& form : {Form{"outside.gltf", false, false}, {"inside.gltf", true, false}, {"m.glb", true, true}}) {
     tinygltf::TinyGLTF writer;
     ASSERT_TRUE(writer.WriteGltfSceneToFile(&model, folder_ / form.name, false, form.embedded, true, form.binary));
-    const Mesh mesh = test::value_of(read_mesh(folder_ / form.name));
+    const Mesh mesh = test::value_of(read_mesh(folder_ / form.name, {.up = UpAxis::y}));
     EXPECT_EQ(mesh.origin, (Vec3{10, 20, 30})) << form.name;
     ASSERT_EQ(mesh.vertex_count(), 3u);
     const Floats expected{0, 0, 0, 0, 2, 0, -2, 0, 0};
@@ -334,7 +334,7 @@ TEST_F(GltfReading, ContainersMustBeWhole) {
   json file = gltf_square();
   file["buffers"][0].erase("uri");
   const std::string whole = glb(file.dump(), square_bytes());
-  const auto parse = [](const std::string& bytes) { return parse_gltf(bytes, "m"); };
+  const auto parse = [](const std::string& bytes) { return parse_gltf(bytes, "m", {.up = UpAxis::y}); };
   ASSERT_TRUE(parse(whole).ok()) << parse(whole).status().message();
   EXPECT_EQ(parse(whole)->positions, corners);
   for (std::size_t size = 0; size < whole.size(); ++size) {

@@ -138,14 +138,20 @@ TEST_P(Gltf, EveryBitComesBack) {
   EXPECT_EQ(folder_.names().size(), 1u);
 }
 
-TEST_P(Gltf, TheOriginIsTheTranslationInDouble) {
+TEST_P(Gltf, TheNodeTurnsTheModelUpAndAddsTheOriginInDouble) {
   const Vec3 origin{1000.1, -2e6 - 1.0 / 3, 1e-3};
   const Mesh mesh = random_mesh(20, 10, {}, origin);
   const tinygltf::Model model = written(mesh);
-  EXPECT_EQ(model.nodes.at(0).translation, (std::vector<double>{origin.x, origin.y, origin.z}));
+  EXPECT_EQ(model.nodes.at(0).matrix,
+            (std::vector<double>{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, origin.x, origin.z, -origin.y, 1}));
   EXPECT_EQ(at_corners(parts_of(model).at(0).positions, parts_of(model).at(0).indices, 3),
             at_corners(mesh.positions, mesh.indices, 3));
-  EXPECT_TRUE(written(random_mesh(20, 10)).nodes.at(0).translation.empty());
+  EXPECT_EQ(test::value_of(read_mesh(path())).origin, origin);
+  ASSERT_TRUE(write_mesh(mesh, path(), {.up = UpAxis::y}).ok());
+  const tinygltf::Model kept = test::read_gltf(path());
+  EXPECT_EQ(kept.nodes.at(0).translation, (std::vector<double>{origin.x, origin.y, origin.z}));
+  EXPECT_TRUE(kept.nodes.at(0).matrix.empty());
+  EXPECT_EQ(test::value_of(read_mesh(path(), {.up = UpAxis::y})).origin, origin);
 }
 
 TEST_P(Gltf, PartsMayShareVerticesAndBeEmpty) {

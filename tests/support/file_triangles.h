@@ -2,6 +2,7 @@
 // The triangles of mesh files, read in double by code that shares nothing with the library's readers. For files that
 // the library writes, without quads.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -95,7 +96,7 @@ inline std::vector<FileTriangle> of_ply(const std::string& bytes) {
   return triangles;
 }
 
-/// Reads one mesh below a node that has a translation and no scale.
+/// Reads one mesh below nodes of which one moves it, and one turns +Z to +Y; returns it as it was before the turn.
 inline std::vector<FileTriangle> of_glb(const std::string& bytes) {
   const char* at = bytes.data() + 12;
   const auto text_bytes = take<std::uint32_t>(at);
@@ -106,6 +107,11 @@ inline std::vector<FileTriangle> of_glb(const std::string& bytes) {
     if (node.contains("translation")) {
       const auto& t = node["translation"];
       origin = {t[0], t[1], t[2]};
+    } else if (node.contains("matrix")) {
+      const auto m = node["matrix"].get<std::vector<double>>();
+      const std::vector<double> turn{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0};
+      if (!std::equal(turn.begin(), turn.end(), m.begin())) throw std::runtime_error("another turn than upwards");
+      if (m[12] != 0 || m[13] != 0 || m[14] != 0) origin = {m[12], -m[14], m[13]};
     }
   const auto place = [&](int accessor) {
     const auto& of = json["accessors"][static_cast<std::size_t>(accessor)];

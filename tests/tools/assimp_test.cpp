@@ -84,8 +84,8 @@ TEST_F(Assimp, ReadsNamesPlacesAndColoursOfAnAssembly) {
       EXPECT_EQ(found[k].colour, k % 2 == 0 ? orange : k / 2 == 2 ? blue : grey) << k;
       for (const Vec3& place : found[k].corners) {
         const std::size_t v = 3 * flat.indices.at(corner++);
-        const Vec3 expected =
-            0.01 * (flat.origin + Vec3{flat.positions[v], flat.positions[v + 1], flat.positions[v + 2]});
+        const Vec3 p = 0.01 * (flat.origin + Vec3{flat.positions[v], flat.positions[v + 1], flat.positions[v + 2]});
+        const Vec3 expected{p.x, p.z, -p.y};  // +Y is up
         // The flat mesh turns mirrored faces around by their last two corners; all else is in the same order.
         if (k / 2 != 2 || (corner - 1) % 3 == 0) {
           EXPECT_LE(length(place - expected), 1e-6) << k;
@@ -127,9 +127,9 @@ TEST_F(Assimp, ReadsTheColouredPartsOfARealAssembly) {
   }
   EXPECT_EQ(counts,
             (std::map<std::string, std::size_t>{{"nut", 8}, {"rod", 1}, {"bolt", 6}, {"l-bracket", 2}, {"plate", 1}}));
-  // In metres, the box that info tells of the model in mm.
-  EXPECT_LE(length(box.lower - Vec3{-0.01, 0, -0.004}), 1e-6);
-  EXPECT_LE(length(box.upper - Vec3{0.19, 0.15, 0.08}), 1e-6);
+  // In metres, the box that info tells of the model in mm, turned up.
+  EXPECT_LE(length(box.lower - Vec3{-0.01, -0.004, -0.15}), 1e-6);
+  EXPECT_LE(length(box.upper - Vec3{0.19, 0.08, 0}), 1e-6);
 }
 
 #endif

@@ -104,7 +104,8 @@ TEST_F(Parts, AShapeIsMeshedOnceAndStandsInManyPlaces) {
   const json first = gltf("one.gltf"), file = gltf("all.gltf");
   EXPECT_EQ(file["buffers"], first["buffers"]);
   ASSERT_EQ(file["nodes"].size(), 51u);
-  EXPECT_EQ(file["nodes"][0]["scale"], json({0.001, 0.001, 0.001}));
+  EXPECT_EQ(file["nodes"][0]["matrix"],
+            json({0.001, 0.0, 0.0, 0.0, 0.0, 0.0, -0.001, 0.0, 0.0, 0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}));
   EXPECT_EQ(file["nodes"][7]["name"], "at_6");
   ASSERT_EQ(file["meshes"].size(), 1u);
   EXPECT_EQ(file["meshes"][0]["name"], "channel");

@@ -106,16 +106,26 @@ struct WrittenModel {
 /// (no surfaces), those of to_bezier().
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit = {});
 
-/// Writes a mesh in the model's coordinates, which are not turned: viewers differ in whether y or z is up. The file
-/// appears whole or not at all: it is written beside its place, then renamed.
+/// The axis of a model that points up: z in CAD, y in glTF and in many programs that draw.
+enum class UpAxis : std::uint8_t { z, y };
+
+/// How meshes are written.
+struct MeshWriteOptions {
+  /// .glb and .gltf, whose viewers show +Y upwards: the axis of the mesh that is to point there. With z, the node above
+  /// all others turns the model; with y, nothing is turned.
+  UpAxis up = UpAxis::z;
+};
+
+/// Writes a mesh in the model's coordinates; only glTF turns them, by a node. The file appears whole or not at all: it
+/// is written beside its place, then renamed.
 ///
 /// - .obj: text, floats in shortest round-trip form, parts as groups. Quads are faces of four corners, after the
 ///   triangles of their part.
 /// - .ply: binary, little endian. Quads are faces of four corners, after all triangles.
 /// - .stl: binary, little endian, only the corners of triangles.
 /// - .glb and .gltf: glTF 2.0, one file with all in it. One mesh for each of Mesh::parts; positions are unchanged, and
-///   the origin is the translation of their node. Normals are made unit; parameters are texture coordinates. Colours of
-///   parts become materials.
+///   their node adds the origin and turns up what is up (MeshWriteOptions). Normals are made unit; parameters are
+///   texture coordinates. Colours of parts become materials.
 ///
 /// .obj, .ply and .stl add the origin in double. .stl rounds the sums to float. So do .obj and .ply where that moves
 /// vertices by at most 2^-16 of the mesh's size, the largest |x|, |y| or |z| of its positions; they hold the sums as
@@ -126,7 +136,7 @@ Result<WrittenModel> write_model(const Model& model, const std::filesystem::path
 /// Errors: io_error, unsupported (the extension; a glTF file beyond 2 GiB); for a mesh that no file can hold
 /// invalid_argument (no vertices; for .stl, .glb and .gltf no triangles; an index or a part out of range),
 /// count_mismatch, non_finite.
-Status write_mesh(const Mesh& mesh, const std::filesystem::path& path);
+Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const MeshWriteOptions& options = {});
 
 /// Returns a bound of the distance between a vertex of the mesh (in double, if it has positions in double) and that of
 /// the file that write_mesh() makes of it: the mesh of the file keeps Tessellation::bound() plus this. It is 0 for
@@ -141,7 +151,8 @@ double file_rounding(const std::filesystem::path& path, const Vec3& origin, cons
 ///
 /// - .glb and .gltf: each shape is stored once, and each instance is a node with its name and placement. Colours become
 ///   materials: a mesh has one primitive per colour of its parts. Positions are relative to each mesh's origin, which
-///   the node adds. The unit of glTF is the metre: the node above all others scales by 0.001 if the assembly's unit is
+///   the node adds. The node above all others turns up what is up. The unit of glTF is the metre: that node scales by
+///   0.001 if the assembly's unit is
 ///   "mm"; "um", "cm", "m", "km", "in", "inch" and "ft" are known too, and no unit counts as metres. Instances that are
 ///   sheared have a mesh of their own, because nodes cannot shear.
 /// - other formats: one mesh, as flatten() makes it, in the assembly's unit; colours are not kept.
@@ -149,11 +160,13 @@ double file_rounding(const std::filesystem::path& path, const Vec3& origin, cons
 /// Errors: those of write_mesh() (index = the shape); invalid_argument (an instance of no shape, a colour beyond 0 to
 /// 1; index = the instance), non_finite (a placement that is not finite, or beyond the range of float), unsupported
 /// (glTF in any other unit).
-Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path);
+Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path,
+                      const MeshWriteOptions& options = {});
 
 /// How read_mesh() treats polygons, and where it reports what it skips.
 struct MeshReadOptions {
   bool keep_quads = false;                       ///< polygons of four corners become Mesh::quads
+  UpAxis up = UpAxis::z;                         ///< .glb and .gltf: the axis of the mesh that the file's +Y becomes
   std::vector<std::string>* warnings = nullptr;  ///< gets one sentence for each kind of thing that is skipped
 };
 /// Reads a mesh from a file, which may be packed by gzip as for read_model().

@@ -75,7 +75,7 @@ Status run_tessellate(const Job& job, const TessellateOptions& options, const Co
   if (!made) return made.status();
   warn_of_rounding(job.output, *made);
   warn_of_surfaces(*loaded, *made);
-  if (Status status = write_meshes(*made, path, *out, timings); !status.ok()) return status;
+  if (Status status = write_meshes(*made, path, options.write, *out, timings); !status.ok()) return status;
   const Result<std::vector<std::string>> faults = mesh_faults(options.mesh, loaded->model, *made);
   if (!faults) return faults.status();
   Status said = report_of(job, *loaded, *made, options.mesh, *faults, timings).print(job.output, common, timings);
@@ -103,6 +103,10 @@ void add_tessellate(Command& tool, Session& session) {
       .require()
       .check(fault_of_mesh_file);
   add_stream_format(command, {"obj", "ply", "stl", "glb", "gltf"}, options->write.format);
+  command.add_choice(
+      "--up", {"z", "y"},
+      "The axis of the model that points up: .glb and .gltf are turned so that viewers show it upwards [z]",
+      [options](const std::string& text) { options->write.mesh.up = text == "y" ? UpAxis::y : UpAxis::z; });
   const std::vector<const Option*> density = add_density(command, options->mesh);
   add_mesh_options(command, options->mesh);
   add_reading(command, options->load);

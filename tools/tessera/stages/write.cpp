@@ -28,9 +28,11 @@ void check_formats(const Plan& plan, const MeshOptions& options) {
     check_format(plan, "--precision", "positions in float", "positions in double");
 }
 
-Status write_meshes(const Meshed& made, const std::string& path, OutputFile& out, Timings& timings) {
+Status write_meshes(const Meshed& made, const std::string& path, const WriteOptions& options, OutputFile& out,
+                    Timings& timings) {
   const auto phase = timings.phase("write");
-  const Status status = made.by_shapes ? write_assembly(made.assembly, path, out) : write_mesh(made.mesh, path, out);
+  const Status status = made.by_shapes ? write_assembly(made.assembly, path, out, options.mesh)
+                                       : write_mesh(made.mesh, path, out, options.mesh);
   return status.ok() ? out.commit() : status;
 }
 

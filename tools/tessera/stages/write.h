@@ -6,12 +6,14 @@
 
 #include "io/file/output_file.h"
 #include "stages/mesh.h"
+#include "tessera/io.h"
 
 namespace tessera::cli {
 
 struct WriteOptions {
   std::string output;
   std::string format;  ///< of standard output, without the dot
+  MeshWriteOptions mesh = {};
 };
 
 /// The options of tessera tessellate: those of its stages.
@@ -27,6 +29,7 @@ struct TessellateOptions {
 void check_formats(const Plan& plan, const MeshOptions& options);
 
 /// Writes a file with the extension of `path`, which then appears. Errors: io_error, cancelled.
-Status write_meshes(const Meshed& made, const std::string& path, OutputFile& out, Timings& timings);
+Status write_meshes(const Meshed& made, const std::string& path, const WriteOptions& options, OutputFile& out,
+                    Timings& timings);
 
 }  // namespace tessera::cli

@@ -24,8 +24,8 @@ struct Format {
   std::string_view extension;
   Result<Model> (*read_model)(std::string_view, std::string_view) = nullptr;
   Result<Mesh> (*read_mesh)(std::string_view, std::string_view, const MeshReadOptions&) = nullptr;
-  Status (*write_mesh)(const Mesh&, OutputFile&) = nullptr;
-  Status (*write_assembly)(const MeshAssembly&, OutputFile&) = nullptr;  ///< none: as one mesh
+  Status (*write_mesh)(const Mesh&, OutputFile&, const MeshWriteOptions&) = nullptr;
+  Status (*write_assembly)(const MeshAssembly&, OutputFile&, const MeshWriteOptions&) = nullptr;  ///< none: as one mesh
   decltype(&write_bpt) write_model = nullptr;
 };
 
@@ -134,31 +134,32 @@ Result<Mesh> read_mesh(const fs::path& path, const MeshReadOptions& options) {
   return guarded([&] { return read_as<Mesh>(path, &Format::read_mesh, "meshes are read", options); });
 }
 
-Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out) {
+Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out, const MeshWriteOptions& options) {
   return guarded([&]() -> Status {
     const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers);
     if (!format) return format.status();
     const Status status = validate(mesh);
-    return in_output(path, status.ok() ? (*format)->write_mesh(mesh, out) : status);
+    return in_output(path, status.ok() ? (*format)->write_mesh(mesh, out, options) : status);
   });
 }
 
-Status write_assembly(const MeshAssembly& assembly, const fs::path& path, OutputFile& out) {
+Status write_assembly(const MeshAssembly& assembly, const fs::path& path, OutputFile& out,
+                      const MeshWriteOptions& options) {
   return guarded([&]() -> Status {
     const Result<const Format*> format = find_format(path, lower_extension(path), &Format::write_mesh, mesh_writers);
     if (!format) return format.status();
     if (const Status status = validate(assembly); !status.ok()) return in_output(path, status);
-    if ((*format)->write_assembly) return in_output(path, (*format)->write_assembly(assembly, out));
+    if ((*format)->write_assembly) return in_output(path, (*format)->write_assembly(assembly, out, options));
     const Result<Mesh> flat = flatten(assembly);
-    return flat ? write_mesh(*flat, path, out) : in_output(path, flat.status());
+    return flat ? write_mesh(*flat, path, out, options) : in_output(path, flat.status());
   });
 }
 
-Status write_mesh(const Mesh& mesh, const fs::path& path) {
-  return write_file(path, [&](OutputFile& out) { return write_mesh(mesh, path, out); });
+Status write_mesh(const Mesh& mesh, const fs::path& path, const MeshWriteOptions& options) {
+  return write_file(path, [&](OutputFile& out) { return write_mesh(mesh, path, out, options); });
 }
-Status write_assembly(const MeshAssembly& assembly, const fs::path& path) {
-  return write_file(path, [&](OutputFile& out) { return write_assembly(assembly, path, out); });
+Status write_assembly(const MeshAssembly& assembly, const fs::path& path, const MeshWriteOptions& options) {
+  return write_file(path, [&](OutputFile& out) { return write_assembly(assembly, path, out, options); });
 }
 
 }}  // namespace tessera::abi_0_1

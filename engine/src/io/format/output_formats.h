@@ -10,10 +10,12 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// Writes the mesh to a file that was created for `path`, and leaves commit() to the caller, which reports failed
 /// writes. Errors: unsupported, and those of a mesh that no file can hold.
-Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFile& out);
+Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, OutputFile& out,
+                  const MeshWriteOptions& options = {});
 /// Writes the assembly to a file that was created for `path`, and leaves commit() to the caller. Errors: as
 /// write_assembly(), but for io_error.
-Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path, OutputFile& out);
+Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path, OutputFile& out,
+                      const MeshWriteOptions& options = {});
 /// Writes the model to a file that was created for `path`, and leaves commit() to the caller, which reports failed
 /// writes. Errors: as write_model(), but for io_error.
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit,

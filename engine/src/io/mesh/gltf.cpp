@@ -56,18 +56,26 @@ Status write(const tinygltf::Model& model, OutputFile& out, bool binary) {
   return {StatusCode::internal, "tinygltf could not write the mesh"};
 }
 
-std::vector<double> numbers(const Vec3& v) { return {v.x, v.y, v.z}; }
+/// Places the vertices of a mesh, which are relative to an origin.
+void place(tinygltf::Node& node, const Affine& placement, const Vec3& origin) {
+  const std::array<Vec3, 3>& c = placement.columns;
+  const Vec3 t = placement.point(origin);
+  if (c != Affine().columns)
+    node.matrix = {c[0].x, c[0].y, c[0].z, 0, c[1].x, c[1].y, c[1].z, 0, c[2].x, c[2].y, c[2].z, 0, t.x, t.y, t.z, 1};
+  else if (!(t == Vec3{}))
+    node.translation = {t.x, t.y, t.z};
+}
 
 /// One node and one mesh for each part.
-Status write(const Mesh& mesh, OutputFile& out, bool binary) {
+Status write(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options, bool binary) {
   if (!mesh.quads.empty()) {
     const Result<Mesh> split = split_quads(mesh);
-    return split ? write(*split, out, binary) : split.status();
+    return split ? write(*split, out, options, binary) : split.status();
   }
   if (mesh.triangle_count() == 0) return no_triangles();
   if (Status status = check_size(GltfContent::byte_count(mesh)); !status.ok()) return status;
   GltfContent content(GltfContent::byte_count(mesh));
-  if (!(mesh.origin == Vec3{})) content.root().translation = numbers(mesh.origin);
+  place(content.root(), up_from(options.up), mesh.origin);
   content.add_vertices(mesh);
   std::vector<MeshPart> parts = mesh.parts;
   if (parts.empty()) parts.push_back({{}, 0, mesh.triangle_count()});
@@ -118,16 +126,6 @@ std::vector<tinygltf::Primitive> coloured(const std::vector<ColouredTriangles>& 
   return primitives;
 }
 
-/// Places the vertices of a mesh, which are relative to an origin.
-void place(tinygltf::Node& node, const Affine& placement, const Vec3& origin) {
-  const std::array<Vec3, 3>& c = placement.columns;
-  const Vec3 t = placement.point(origin);
-  if (c != Affine().columns)
-    node.matrix = {c[0].x, c[0].y, c[0].z, 0, c[1].x, c[1].y, c[1].z, 0, c[2].x, c[2].y, c[2].z, 0, t.x, t.y, t.z, 1};
-  else if (!(t == Vec3{}))
-    node.translation = numbers(t);
-}
-
 /// Whether a node can have the placement: it turns, scales and moves, but does not shear (section 3.5.3).
 bool fits_node(const Affine& placement) {
   constexpr double rounding = 1e-6;
@@ -176,9 +174,10 @@ double metres(const std::string& unit) {
 /// Adds all shapes that have instances with triangles, each once, and a node for each instance.
 class AssemblyContent {
  public:
-  AssemblyContent(const MeshAssembly& assembly, std::size_t bytes) : assembly_(assembly), content_(bytes) {
+  AssemblyContent(const MeshAssembly& assembly, UpAxis up, std::size_t bytes) : assembly_(assembly), content_(bytes) {
     content_.name(content_.root(), assembly.name);
-    if (const double scale = metres(assembly.unit); scale != 1) content_.root().scale = {scale, scale, scale};
+    const double scale = metres(assembly.unit);
+    place(content_.root(), up_from(up) * Affine::scaled({scale, scale, scale}), {});
     for (const MeshInstance& instance : assembly.instances) add(instance);
   }
 
@@ -207,14 +206,14 @@ class AssemblyContent {
 };
 
 /// One mesh for each shape and colour of instances, all of which share the shape's vertices and indices.
-Status write(const MeshAssembly& assembly, OutputFile& out, bool binary) {
+Status write(const MeshAssembly& assembly, OutputFile& out, const MeshWriteOptions& options, bool binary) {
   if (metres(assembly.unit) == 0)
     return {StatusCode::unsupported, "glTF is in metres, and the unit " + quote(assembly.unit) +
                                          " is not known; known: um, mm, cm, m, km, in (inch), ft"};
   if (needs_preparation(assembly)) {
     MeshAssembly prepared = assembly;
     const Status status = prepare(prepared);
-    return status.ok() ? write(prepared, out, binary) : status;
+    return status.ok() ? write(prepared, out, options, binary) : status;
   }
   std::size_t bytes = 0, triangles = 0;
   for (const ShapeMesh& shape : assembly.shapes) bytes += GltfContent::byte_count(shape.mesh);
@@ -222,14 +221,22 @@ Status write(const MeshAssembly& assembly, OutputFile& out, bool binary) {
     triangles += assembly.shapes[instance.shape].mesh.triangle_count();
   if (triangles == 0) return no_triangles();
   if (Status status = check_size(bytes); !status.ok()) return status;
-  return write(AssemblyContent(assembly, bytes).take(), out, binary);
+  return write(AssemblyContent(assembly, options.up, bytes).take(), out, binary);
 }
 
 }  // namespace
 
-Status write_glb(const Mesh& mesh, OutputFile& out) { return write(mesh, out, true); }
-Status write_gltf(const Mesh& mesh, OutputFile& out) { return write(mesh, out, false); }
-Status write_glb_assembly(const MeshAssembly& assembly, OutputFile& out) { return write(assembly, out, true); }
-Status write_gltf_assembly(const MeshAssembly& assembly, OutputFile& out) { return write(assembly, out, false); }
+Status write_glb(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options) {
+  return write(mesh, out, options, true);
+}
+Status write_gltf(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options) {
+  return write(mesh, out, options, false);
+}
+Status write_glb_assembly(const MeshAssembly& assembly, OutputFile& out, const MeshWriteOptions& options) {
+  return write(assembly, out, options, true);
+}
+Status write_gltf_assembly(const MeshAssembly& assembly, OutputFile& out, const MeshWriteOptions& options) {
+  return write(assembly, out, options, false);
+}
 
 }}  // namespace tessera::abi_0_1

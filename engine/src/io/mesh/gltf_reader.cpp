@@ -201,7 +201,7 @@ class GltfReader {
     const auto add = [&](const std::vector<JsonValue>& nodes, const Affine& map) {
       for (std::size_t k = nodes.size(); k-- > 0;) waiting.push_back({nodes[k], map});
     };
-    add(roots(), {});
+    add(roots(), model_from(options_.up));
     if (root_.find("animations")) skipped_.insert("animations");
     while (!waiting.empty()) {
       const PlacedNode at = waiting.back();

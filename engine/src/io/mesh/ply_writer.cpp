@@ -158,7 +158,7 @@ void PlyLayout::pack(const Mesh& piece, const PiecePlace& place, MeshRecord kind
   pack_faces<4>(place, piece.quads, totals_.patches ? &piece.quad_patches : nullptr, first, last, to);
 }
 
-Status write_ply(const Mesh& mesh, OutputFile& out) {
+Status write_ply(const Mesh& mesh, OutputFile& out, const MeshWriteOptions&) {
   MeshTotals totals = MeshTotals::of(mesh);
   totals.double_positions |= needs_double_sums(PositionRange::of(mesh));
   const Result<PlyLayout> layout = PlyLayout::make(totals);

@@ -204,7 +204,7 @@ class AsciiReader {
 
 }  // namespace
 
-Status write_stl(const Mesh& mesh, OutputFile& out) {
+Status write_stl(const Mesh& mesh, OutputFile& out, const MeshWriteOptions&) {
   if (!mesh.quads.empty()) {
     const Result<Mesh> split = split_quads(mesh);
     return split ? write_stl(*split, out) : split.status();

@@ -157,7 +157,7 @@ class ObjReader {
 
 }  // namespace
 
-Status write_obj(const Mesh& mesh, OutputFile& out) {
+Status write_obj(const Mesh& mesh, OutputFile& out, const MeshWriteOptions&) {
   const bool normals = !mesh.normals.empty(), parameters = !mesh.parameters.empty();
   const bool has_double_sums = needs_double_sums(PositionRange::of(mesh));
   const std::string quads = mesh.quads.empty() ? "" : ", " + std::to_string(mesh.quad_count()) + " quads";
