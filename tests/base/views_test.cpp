@@ -4,10 +4,34 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "tessera/geometry.h"
+
 namespace tessera::test { namespace {
+
+struct Vertex {
+  float u, v;
+  std::array<float, 3> position;
+  Vec3 place;
+};
+
+TEST(Views, OfMembersOfRecords) {
+  std::vector<Vertex> vertices(3);
+  const auto positions = View3<float>::of(vertices, &Vertex::position);
+  ASSERT_EQ(positions.size, 3u);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (int c = 0; c < 3; ++c) positions.at(k, c) = static_cast<float>(10 * k) + static_cast<float>(c);
+  EXPECT_EQ(vertices[2].position, (std::array<float, 3>{20, 21, 22}));
+  View3<double>::of(vertices, &Vertex::place).at(1, 2) = 7;
+  EXPECT_EQ(vertices[1].place, (Vec3{0, 0, 7}));
+  View1<float>::of(std::span(vertices).subspan(1), &Vertex::v).at(0, 0) = 5;
+  EXPECT_EQ(vertices[1].v, 5);
+  EXPECT_EQ(View3<float>::of(std::span(vertices).first(0), &Vertex::position).size, 0u);
+}
 
 TEST(Views, RecordsThatFit) {
   std::vector<float> memory(13);

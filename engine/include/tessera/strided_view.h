@@ -12,9 +12,9 @@ namespace tessera { inline namespace abi_0_1 {
 /// k is `component[c][k * stride]`. An empty view (the default) means "not wanted".
 template <class T, int N>
 struct VectorView {
-  std::array<T*, N> component{};  ///< the first value of each component
-  std::ptrdiff_t stride = 1;      ///< in elements of T, at least 1
-  std::size_t size = 0;           ///< number of records that fit
+  std::array<T*, std::size_t{N}> component{};  ///< the first value of each component
+  std::ptrdiff_t stride = 1;                   ///< in elements of T, at least 1
+  std::size_t size = 0;                        ///< number of records that fit
 
   bool empty() const { return component[0] == nullptr; }  ///< whether the output is not wanted
   /// Returns component c of record k < size.
@@ -22,8 +22,23 @@ struct VectorView {
     return component[static_cast<std::size_t>(c)][static_cast<std::ptrdiff_t>(k) * stride];
   }
 
+  /// Makes a view of a member of each record of an array, for example View3<float>::of(vertices, &Vertex::position).
+  /// The member is N values of type T in a row: an array or a struct of them.
+  template <class Records, class Record, class Member>
+  static VectorView of(Records&& records, Member Record::*member) {
+    static_assert(sizeof(Member) == std::size_t{N} * sizeof(T), "the member is N values of type T");
+    static_assert(sizeof(Record) % sizeof(T) == 0, "records are whole numbers of T apart");
+    VectorView view;
+    view.size = std::size(records);
+    view.stride = static_cast<std::ptrdiff_t>(sizeof(Record) / sizeof(T));
+    if (view.size == 0) return view;
+    T* const first = reinterpret_cast<T*>(&(std::data(records)->*member));
+    for (std::size_t c = 0; c < std::size_t{N}; ++c) view.component[c] = first + c;
+    return view;
+  }
+
   /// Makes a view of one array per component. The shortest array limits the size.
-  static VectorView soa(const std::array<std::span<T>, N>& arrays) {
+  static VectorView soa(const std::array<std::span<T>, std::size_t{N}>& arrays) {
     VectorView view;
     view.size = arrays[0].size();
     for (std::size_t c = 0; c < N; ++c) {
