@@ -7,6 +7,9 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 # A project that adds this one keeps its own choice, no choice included.
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+elseif(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND NOT CMAKE_CXX_FLAGS MATCHES "-O")
+  message(WARNING "CMAKE_BUILD_TYPE is empty, so Tessera is compiled without optimisation, but for its kernels: planning, "
+    "reading and rays take several times as long. Set -D CMAKE_BUILD_TYPE=Release, or -O2 in CMAKE_CXX_FLAGS.")
 endif()
 
 # Carried by every target of this project, and by none of its users.

@@ -1,5 +1,6 @@
 #pragma once
-// Exceptions as values: how the library, and code around it, turns what is thrown into a Status.
+// Exceptions as values: how the library, and code around it, turns what is thrown into a Status. Code that is compiled
+// without exceptions has none to turn.
 
 #include <exception>
 #include <new>
@@ -10,6 +11,7 @@
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
 
+#ifdef __cpp_exceptions
 /// The Status of the exception that is being handled: out_of_memory, or internal with its message.
 [[gnu::cold]] inline Status status_of_exception() noexcept {
   try {
@@ -26,15 +28,20 @@ namespace tessera { inline namespace abi_0_1 {
     return Status(StatusCode::out_of_memory, {});
   }
 }
+#endif
 
 /// Calls body() and returns its result, a Status or a Result; an exception becomes a Status.
 template <class Body>
 [[gnu::visibility("hidden")]] auto guarded(Body&& body) noexcept -> decltype(body()) {
+#ifdef __cpp_exceptions
   try {
     return std::forward<Body>(body)();
   } catch (...) {
     return status_of_exception();
   }
+#else
+  return std::forward<Body>(body)();
+#endif
 }
 
 }}  // namespace tessera::abi_0_1

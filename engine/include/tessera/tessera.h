@@ -4,6 +4,10 @@
 // Unless a comment says otherwise: arguments are not kept, and results own their memory. Threads: any number of calls
 // at once, on different objects or on const ones; work runs in the caller's TBB arena.
 
+#if __cplusplus < 202002L
+#error "Tessera needs C++20: compile with -std=c++20 or later"
+#endif
+
 #include "tessera/bezier_operations.h"
 #include "tessera/bezier_patch.h"
 #include "tessera/brep.h"

@@ -1,5 +1,6 @@
 #pragma once
-// Errors as exceptions, for programs that prefer them to values. The library itself throws none of these.
+// Errors as exceptions, for programs that prefer them to values. The library itself throws none of these. Nothing is
+// declared where exceptions are turned off.
 //
 // Threads: any.
 
@@ -10,6 +11,8 @@
 
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
+
+#ifdef __cpp_exceptions
 
 /// A Status that is an error, as an exception; what() is its message.
 class StatusError : public std::runtime_error {
@@ -32,6 +35,8 @@ T value_or_throw(Result<T> result) {
   throw_if_failed(result.status());
   return *std::move(result);
 }
+
+#endif
 
 }}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

@@ -165,7 +165,7 @@ class Taylor {
 
  private:
   struct Filled {};
-  using Coefficients = std::array<Scalar, Order + 1>;  // f^(k)(x0) / k!
+  using Coefficients = std::array<Scalar, std::size_t{Order} + 1>;  // f^(k)(x0) / k!
   static constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
   Taylor(const Scalar& constant, Filled) {
