@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import baselines, compare, count, export, peers, record, records, report, roofline, track
+from . import baselines, check, compare, count, export, peers, record, records, report, roofline, track
 from .console import FAILED, GOOD, REGRESSION, SKIPPED, USAGE, Failure, say
 
 DESCRIPTION = """\
@@ -12,6 +12,7 @@ Catches what makes Tessera slower, on machines that do other things as well.
   tools/perf count --check                   does a counted case take more instructions?
   tools/perf record --roofline               this build's figures, kept in build/perf/records
   tools/perf track ./my_bench                the figures of a program that is not Tessera's, kept in perf-records
+  tools/perf check                           is the newest record slower than those before it?
   tools/perf list                            what was recorded: date, commit, machine, cases
   tools/perf report                          a page of what was recorded: history, roofline, peers
   tools/perf export                          the newest figures, for github-action-benchmark
@@ -130,26 +131,39 @@ def add_track(commands):
     parser.add_argument("--of", metavar="TEXT", help="a commit or another name of the version that is measured "
                         "(default: the commit of the git repository in the current folder)")
     parser.add_argument("--passes", type=number(1, 100, True), default=1, metavar="N",
-                        help="runs of the program; each case counts by its best rate (default: 1)")
+                        help="runs of the program; each case counts by its best rate, and check by their range (default: 1)")
     parser.add_argument("--time-limit", type=number(0.01, 1e6), default=600, metavar="S",
                         help="for one run, after which the program is stopped (default: 600)")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("-o", "--output", metavar="FILE", help="default: DATE_COMMIT.json in the folder of records")
-    where.add_argument("--records", default="perf-records", metavar="FOLDER", help="default: perf-records")
+    where.add_argument("--records", default=records.TRACKED, metavar="FOLDER", help=f"default: {records.TRACKED}")
     parser.set_defaults(run=track.command)
 
 
 def add_records(parser, choice=True):
     """The arguments that name records, and choose among them."""
     parser.add_argument("records", nargs="*", metavar="RECORD",
-                        help="of record or track, or folders of them (default: build/perf/records and the times in "
-                        "bench/baselines)")
+                        help="of record or track, or folders of them (default: perf-records in this folder, if "
+                        "there is one, else Tessera's own: build/perf/records and the times in bench/baselines)")
     parser.add_argument("--baselines", default=baselines.FOLDER, metavar="FOLDER", help="default: bench/baselines")
     if choice:
         parser.add_argument("--machine", metavar="TEXT", help="records of machines with this text in their name, as "
                             "list prints it (default: the newest record's machine)")
         parser.add_argument("--program", metavar="NAME",
                             help="records of this program (default: the newest record's program)")
+
+
+def add_check(commands):
+    parser = commands.add_parser(
+        "check", help="whether the newest record is slower than those before",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Compares each case of the newest record with the median of up to 20 records before it, of the same program,\n"
+        "machine and instruction set. A case is slower where its time grew by more than the threshold, and by more than\n"
+        "chance explains: three standard deviations of the records before; with fewer than four of these the range of\n"
+        "passes, and at least 20%. Record several passes each (track --passes 5).", epilog=STATUS)
+    add_records(parser)
+    parser.add_argument("--threshold", type=number(0, 1000), default=5, metavar="PERCENT", help="default: 5")
+    parser.set_defaults(run=check.command)
 
 
 def add_list(commands):
@@ -180,7 +194,7 @@ def add_report(commands):
     parser = commands.add_parser(
         "report", help="a page of what was recorded", formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Writes one page of HTML that needs no other file: the history of rates and of instructions, the roofline, the peers.\n"
-        "Its plots also as PNG, by rsvg-convert (Debian's package librsvg2-bin).", epilog=STATUS)
+        "Where rsvg-convert is installed, its plots lie beside it as PNG.", epilog=STATUS)
     add_records(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="default: build/perf/report.html; plots lie beside it")
     parser.add_argument("--peers", metavar="FILE", help="what tools/peers.sh left (default: build/peers/peers.json, "
@@ -211,7 +225,7 @@ def make_parser():
     parser = argparse.ArgumentParser(prog="tools/perf", description=DESCRIPTION, epilog=STATUS,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for add in (add_compare, add_count, add_record, add_track, add_list, add_report, add_export,
+    for add in (add_compare, add_count, add_record, add_track, add_check, add_list, add_report, add_export,
                 add_roofline, add_peers):
         add(commands)
     return parser

@@ -11,8 +11,10 @@ def rounded(value, digits=5):
     return float(f"{value:.{digits}g}")
 
 
-def entry_of(case):
+def entry_of(case, rates):
     entry = {"rate": rounded(case.rate)}
+    if len(rates) > 1:
+        entry["passes"] = rates
     if case.limit_fraction is not None:
         entry["limit_fraction"] = rounded(case.limit_fraction, 3)
     return entry
@@ -35,20 +37,21 @@ def fastest_isa(cases):
 
 
 def measure(build, cases, seconds, limits, passes):
-    """The best of several passes over all cases: a busy moment affects only one of them."""
+    """The best of several passes over all cases, since a busy moment affects only one of them; and all of their rates."""
     groups = [cases[k:k + 6] for k in range(0, len(cases), 6)]
     progress = Progress(len(groups) * passes)
-    best = {}
+    best, rates = {}, {}
     for _ in range(passes):
         for group in groups:
             progress.step(f"runs {group[0]} and {len(group) - 1} more")
             for name, case in suite.run(build.program, group, seconds, limits).items():
                 if case.rate == 0:
                     raise Failure(f"{name} reports no items a second")
+                rates.setdefault(name, []).append(rounded(case.rate))
                 if name not in best or case.rate > best[name].rate:
                     best[name] = case
     progress.end()
-    return best
+    return best, rates
 
 
 def roofline_of(build):
@@ -71,12 +74,12 @@ def command(arguments):
     facts.setdefault("isa", fastest_isa(suite.names(build.program)))
     if machine.busy():
         say(machine.busy() + "; rates are lower than they need be")
-    found = measure(build, cases, arguments.seconds, not arguments.no_limits, arguments.passes)
+    found, rates = measure(build, cases, arguments.seconds, not arguments.no_limits, arguments.passes)
     short, dirty, seconds, subject = origin_of(build, arguments.of)
     content = {"commit": short, "dirty": dirty, "commit_time": seconds, "subject": subject,
                "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M:%S"),
                "machine": machine.describe(), "facts": facts,
-               "cases": {name: entry_of(case) for name, case in found.items()}}
+               "cases": {name: entry_of(case, rates[name]) for name, case in found.items()}}
     if arguments.roofline:
         content["roofline"] = roofline_of(build)
     if arguments.baseline:

@@ -9,6 +9,7 @@ from .repository import WORK
 
 KEYS = ("commit", "date", "machine", "facts", "cases")
 OWN = "tessera_bench"
+TRACKED = "perf-records"  # where track keeps records, in the folder where it is started
 ADVICE = "delete the file, or record again"
 NOTHING = ("nothing was recorded yet: tools/perf record, or tools/perf track for programs that are not "
            "Tessera's")
@@ -29,13 +30,19 @@ def read_one(file):
         rate = entry.get("rate") if isinstance(entry, dict) else None
         if not json_file.is_positive(rate):
             raise Failure(f"{file}: the rate of case '{case}' is {rate}; it must be a finite number above 0: {ADVICE}")
+        passes = entry.get("passes", [rate])
+        if not isinstance(passes, list) or not passes or not all(map(json_file.is_positive, passes)):
+            raise Failure(f"{file}: the passes of case '{case}' must be finite numbers above 0: {ADVICE}")
     if content.get("roofline"):
         roofline.checked(content["roofline"], f"{file}: roofline")
     return content
 
 
 def files_of(names, folder):
-    """The files for names of records and of folders of records; by default Tessera's own records and baselines."""
+    """The files for names of records and of folders of records; by default those of track in this folder, or Tessera's
+    own records and baselines."""
+    if not names and sorted(Path(TRACKED).glob("*.json")):
+        names = [TRACKED]
     if not names:
         return sorted((WORK / "records").glob("*.json")) + sorted(Path(folder).glob("*/times.json"))
     files = []

@@ -215,9 +215,8 @@ def page(found, others, folder, peers):
 
 
 def write_pictures(pictures, folder):
-    """Writes the plots as PNG if rsvg-convert is installed."""
+    """Writes the plots as PNG if rsvg-convert is installed; the page holds them anyway."""
     if not shutil.which("rsvg-convert"):
-        say("perf: no PNG of the plots: rsvg-convert is not installed (Debian's package librsvg2-bin)")
         return []
     files = {name: folder / f"{name}.png" for name in pictures}
     for name, svg in pictures.items():
