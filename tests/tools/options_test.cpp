@@ -15,6 +15,7 @@ TEST_F(CommonOptions, WrongWordsAreNamedWithWhatMayBeMeant) {
   expect_failure({"inof", teapot}, 2, "tessera: there is no command inof; did you mean info?\n");
   expect_failure({"ray", teapot}, 2, "there is no command ray; did you mean raycast?");
   expect_failure({"paint"}, 2, "there is no command paint\n");
+  expect_failure({"tesselate", teapot, "-o", "y.glb"}, 2, "there is no command tesselate; did you mean tessellate?");
   expect_failure({"raycast", teapot, "-o", "a.png", "--sise", "20x20"}, 2,
                  "tessera: raycast has no option --sise; did you mean --size?");
   expect_failure({"raycast", teapot, "-o", "a.png", "--sise=20x20"}, 2, "did you mean --size?");

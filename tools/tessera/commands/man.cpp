@@ -1,5 +1,8 @@
 // tessera man: the manual page.
 
+#include <unistd.h>
+
+#include <cstdio>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -93,15 +96,26 @@ std::string man_page(const Command& tool, const std::string& version) {
   return text;
 }
 
+/// Opens the page in man's viewer. Returns whether there is one.
+bool show(const std::string& page) {
+  std::FILE* const viewer = popen("command -v man > /dev/null && exec man -l -", "w");
+  if (!viewer) return false;
+  std::fwrite(page.data(), 1, page.size(), viewer);
+  return pclose(viewer) == 0;
+}
+
 }  // namespace
 
 void add_man(Command& tool, Session& session) {
-  Command& command = tool.add_command("man", "Print the manual page");
+  Command& command = tool.add_command("man", "Show the manual page, or print it if the output is no terminal");
   const auto output = std::make_shared<std::string>();
   add_text_output(command, *output);
   command.footer = "Example:\n  tessera man | man -l -";
   command.choose = [output, &tool, &session] {
-    session.command = [output, &tool] { return write_text(man_page(tool, TESSERA_VERSION), *output); };
+    session.command = [output, &tool] {
+      const std::string page = man_page(tool, TESSERA_VERSION);
+      return output->empty() && isatty(STDOUT_FILENO) != 0 && show(page) ? Status() : write_text(page, *output);
+    };
   };
 }
 

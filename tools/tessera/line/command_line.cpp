@@ -64,11 +64,13 @@ std::string fault_of_word(const Command& tool, const Command& command, const std
   return "there is no option " + name + " before a command" + did_you_mean(name, names);
 }
 
-/// Throws for the first word that nothing takes, options first.
+/// Throws for the first word that nothing takes: of a command options first, since words may be their values.
 void check_no_words_left(const Command& tool, const Command& command, const std::vector<std::string>& words) {
+  if (words.empty()) return;
   const auto option = std::find_if(words.begin(), words.end(),
                                    [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
-  if (!words.empty()) throw UsageError(fault_of_word(tool, command, option == words.end() ? words[0] : *option));
+  const bool is_first = &command == &tool || option == words.end();
+  throw UsageError(fault_of_word(tool, command, is_first ? words[0] : *option));
 }
 
 /// The message of CLI11's error: an option without its value, or a flag with one.

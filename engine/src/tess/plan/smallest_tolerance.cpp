@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 
+#include "base/text.h"
 #include "block/patch_trims.h"
 #include "tess/plan/make_plan.h"
 
@@ -37,6 +40,16 @@ std::uint64_t least_triangles(const CertifiedPlan& plan) {
   return least;
 }
 
+/// Returns the error that names the fewest triangles, if it was a limit on them that the coarsest plan broke.
+Status too_few(const PlanFacts& facts, PlanRequest coarsest, const Status& refused, const Execution& execution) {
+  const std::uint64_t budget = std::exchange(coarsest.max_triangles, std::numeric_limits<std::uint64_t>::max());
+  const Result<CertifiedPlan> fewest = make_leaner_plan(facts, coarsest, execution);
+  if (!fewest || fewest->capacity().triangles <= budget) return refused;
+  return {StatusCode::invalid_argument, "the budget is " + counted(budget, "triangle") +
+                                            ", and the mesh takes at least " +
+                                            std::to_string(fewest->capacity().triangles)};
+}
+
 }  // namespace
 
 Result<double> smallest_tolerance(const PlanFacts& facts, std::uint64_t max_triangles, const Execution& execution) {
@@ -52,7 +65,8 @@ Result<double> smallest_tolerance(const PlanFacts& facts, std::uint64_t max_tria
   high = std::max(high, 1.001 * low);
   if (needs.set().trims) high = std::max(high, needs.set().model_box().diagonal());  // loops need segments of their own
   const PlanRequest coarsest{.tolerance = high, .fewest = is_fewest, .max_triangles = max_triangles};
-  if (Result<CertifiedPlan> plan = make_limited_plan(facts, coarsest, execution); !plan) return plan.status();
+  if (Result<CertifiedPlan> plan = make_limited_plan(facts, coarsest, execution); !plan)
+    return too_few(facts, coarsest, plan.status(), execution);
 
   // A cut patch with more than twice the triangles may not fit below either: see least_triangles().
   const std::uint64_t max_of_patch = 2 * std::min(max_triangles, std::numeric_limits<std::uint64_t>::max() / 2);
