@@ -132,6 +132,10 @@ struct TessellationOptions {
   /// Edits: a patch keeps its segments while they keep the tolerances and have at most (1 + spare) times the cells of
   /// the best ones. Finite, at least 0.
   double spare = 0.25;
+  /// Edits: the part of the tolerances that new segments leave for edits to come, from 0 to 0.9. Each patch is divided
+  /// for 1 - headroom of them, and keeps its segments while edits keep them in full, so the triangles of an animation
+  /// rarely change. Cells become 1 / (1 - headroom) times as many. Not for a budget, and not for cut patches.
+  double headroom = 0;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
   /// Double: the mesh has positions in double as well, in the model's coordinates, and the bounds hold for these.
   ///

@@ -82,7 +82,7 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     found = find_smallest();
   }
   if (!found.ok()) return found;
-  PlanRequest request{tolerance, planned->fewest, kept, options.max_triangles};
+  PlanRequest request{tolerance, planned->fewest, kept, options.max_triangles, options.headroom};
   Result<CertifiedPlan> plan = make_limited_plan(*facts, request, execution);
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty()) {
     request.kept = {};

@@ -60,7 +60,9 @@ class ProvenMesh final : public Tessellation::Impl {
   Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
                       FunctionRef<bool(std::size_t patch)> is_written) const;
 
-  PlanOfSet of(const PatchSet::Impl& set) const { return {set, plan_, weld_, joins_, tolerance_, options_.spare}; }
+  PlanOfSet of(const PatchSet::Impl& set) const {
+    return {set, plan_, weld_, joins_, tolerance_, options_.spare, options_.headroom};
+  }
   /// Checks an update; after an error the set's values and the views are as they were.
   Status start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
   /// Makes the memory for proofs of a set.

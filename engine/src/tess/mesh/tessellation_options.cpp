@@ -43,6 +43,16 @@ Status check_joining(const Joining& joining, const PatchSet& set) {
   return {};
 }
 
+/// Checks how segments follow edits.
+Status check_edits(const TessellationOptions& options) {
+  const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
+  if (!(options.spare >= 0 && std::isfinite(options.spare)))
+    return bad("the spare is " + text(options.spare) + ", it must be finite and at least 0");
+  if (!(options.headroom >= 0 && options.headroom <= 0.9))
+    return bad("the headroom is " + text(options.headroom) + ", it must be from 0 to 0.9");
+  return options.budget && options.headroom > 0 ? bad("a budget has no headroom: set a tolerance") : Status();
+}
+
 }  // namespace
 
 Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set) {
@@ -52,8 +62,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
     return bad("there are neither rates nor a tolerance: set rates, a distance, an angle, pixels or a budget");
   if (options.tolerance && options.budget)
     return bad("there are both a tolerance and a budget, which finds the tolerance: set one of them");
-  if (!(options.spare >= 0 && std::isfinite(options.spare)))
-    return bad("the spare is " + text(options.spare) + ", it must be finite and at least 0");
+  if (Status status = check_edits(options); !status.ok()) return status;
   if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
     return bad("the tolerance is " + text(*options.tolerance) + ", it must be finite and above 0");
   if (options.angle && !(*options.angle > 0 && *options.angle <= std::numbers::pi / 2))

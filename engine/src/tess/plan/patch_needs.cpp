@@ -127,6 +127,13 @@ std::optional<Rates> rates_for(const CellLimits& limits, int most) {
   return distance_alone ? limits.chord->cheapest(limits.distance, most) : cheapest(limits, most);
 }
 
+CellLimits part_of(CellLimits limits, double part) {
+  limits.distance *= part;
+  limits.pixels *= part;
+  limits.angle *= part;
+  return limits;
+}
+
 /// Whether the kept segments of a patch are few enough compared with the best.
 bool keeps_segments(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
   return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
@@ -165,19 +172,19 @@ NeededSegments PatchNeeds::segments_for(std::size_t patch, const PlanRequest& re
     limits.turning = &turning->bound;
     limits.angle = request.share * request.slack * *options_.angle;
   }
-  std::optional<Rates> rates = rates_for(limits, most);
-  if (rates && turning && !bounded)
-    rates = Rates{std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
+  const CellLimits aimed = part_of(limits, 1 - request.headroom);
+  std::optional<Rates> rates = rates_for(aimed, most);
   if (!rates) {
     needed.failure = NeededSegments::Failure::wide;
     return needed;
   }
+  if (turning && !bounded) rates = {std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
   needed.cells = double(rates->u) * rates->v;
   if (most > max_rate) return needed;
   // Raised rates may have become odd: bounds of halves may not hold for the whole.
-  if (turning && !bounded && !limits.keeps(*rates)) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
-  const int min_rate = turning && !bounded ? options_.angle_rate : 1;
-  const ProvenSegments proven = settle(patch, limits, chord, min_rate, request, *rates);
+  if (turning && !bounded && !aimed.keeps(*rates)) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
+  const ProvenSegments proven =
+      settle(patch, aimed, limits, chord, turning && !bounded ? options_.angle_rate : 1, request, *rates);
   needed.segments = proven.segments;
   needed.anywhere = proven.anywhere;
   needed.bound = given + proven.distance;
@@ -186,15 +193,16 @@ NeededSegments PatchNeeds::segments_for(std::size_t patch, const PlanRequest& re
   return needed;
 }
 
-ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int min_rate,
-                                  const PlanRequest& request, Rates rates) const {
+ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits,
+                                  const ChordBound& chord, int min_rate, const PlanRequest& request,
+                                  Rates rates) const {
   const KeptSegments& kept = request.kept;
-  CellLimits others = limits;
-  others.chord = nullptr;
-  const auto keeps_others = [&](PatchSegments segments) {
+  const auto keep_others = [&](CellLimits others, PatchSegments segments) {
+    others.chord = nullptr;
     const Rates least = segments.coarsest();
     return std::min(least.u, least.v) >= min_rate && others.keeps(segments);
   };
+  const auto keeps_others = [&](PatchSegments segments) { return keep_others(limits, segments); };
   const bool anywhere = !limits.is_for_halves();
   const auto proven_for = [&](PatchSegments segments) {
     return ProvenSegments{segments, chord.distance_of(segments, anywhere), anywhere};
@@ -209,11 +217,11 @@ ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, c
     if (choices.fewest().segments.cells() < proven.segments.cells()) proven = choices.fewest();
     proven.anywhere = false;
   }
-  if (!keeps_segments(kept, patch, proven.segments) || !keeps_others(kept.segments[patch])) return proven;
+  if (!keeps_segments(kept, patch, proven.segments) || !keep_others(kept_limits, kept.segments[patch])) return proven;
   const PatchSegments had = kept.segments[patch];
   double keeps = chord.distance_of(had, anywhere);
-  if (limits.chord && !(keeps <= limits.distance)) keeps = local_distance_of(*this, patch, had);
-  if (limits.chord && !(keeps <= limits.distance)) return proven;
+  if (limits.chord && !(keeps <= kept_limits.distance)) keeps = local_distance_of(*this, patch, had);
+  if (limits.chord && !(keeps <= kept_limits.distance)) return proven;
   return {had, keeps, anywhere};
 }
 

@@ -92,9 +92,9 @@ class PatchNeeds {
   NeededSegments segments_for(std::size_t patch, const PlanRequest& request, int most) const;
 
  private:
-  /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones where possible.
-  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const ChordBound& chord, int min_rate,
-                        const PlanRequest& request, Rates rates) const;
+  /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones that keep theirs.
+  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits,
+                        const ChordBound& chord, int min_rate, const PlanRequest& request, Rates rates) const;
 
   const PatchSet::Impl* set_;
   PlannerOptions options_;

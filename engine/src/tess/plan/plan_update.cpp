@@ -133,7 +133,10 @@ void PlanUpdate::choose(const PlanOfSet& of, std::uint32_t block, std::uint32_t 
   const PlannerOptions& options = facts_.needs.options();
   if (!options.angle && !options.camera) return choose_by_distance(of, block, wanted);
   if (options.camera) facts_.needs.bound_pictures(block);
-  const PlanRequest request{of.tolerance, options.fewest, {of.plan.patches().segments, of.spare}};
+  const PlanRequest request{.tolerance = of.tolerance,
+                            .fewest = options.fewest,
+                            .kept = {of.plan.patches().segments, of.spare},
+                            .headroom = of.headroom};
   for (std::size_t lane = 0; lane < of.set.lane_counts[block]; ++lane) {
     if (!(wanted >> lane & 1u)) continue;
     const std::size_t patch = of.set.lane_patches[block * std::size_t{PatchSet::lanes} + lane];
@@ -154,8 +157,10 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
   ChordBlocks::Lanes<double> left;
   left.fill(of.tolerance);
   for (std::size_t lane = 0; lane < count; ++lane) left[lane] = of.tolerance - needs.given(patches[lane]);
+  ChordBlocks::Lanes<double> aimed = left;
+  for (double& lane : aimed) lane *= 1 - of.headroom;
   ChordBlocks::Products products;
-  const ChordBlocks::Choice best = needs.chords().cheapest(of.set, block, count, left, max_rate, products);
+  const ChordBlocks::Choice best = needs.chords().cheapest(of.set, block, count, aimed, max_rate, products);
   for (std::size_t lane = 0; lane < count; ++lane) {
     if (!(wanted >> lane & 1u)) continue;
     const std::size_t patch = patches[lane];

@@ -20,6 +20,7 @@ struct PlanOfSet {
   const VertexCopies& joins;  ///< vertices with a common normal, or stored once
   double tolerance;           ///< the distance, infinite if there is no limit
   double spare;               ///< see KeptSegments
+  double headroom;            ///< see PlanRequest
 };
 
 /// The bounds of all patches of a set, kept for edits. Holds memory for all patches, so that repeated proofs of

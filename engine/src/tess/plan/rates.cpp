@@ -37,7 +37,7 @@ class RatesByDistance {
     const auto find = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         if (const double left = left_of(k); !needs_.shapes()[k].is_curve && left > 0)
-          find_fewer(needs_.set().patches[k], left, no_others, choices_[k]);
+          find_fewer(needs_.set().patches[k], (1 - request_.headroom) * left, no_others, choices_[k]);
     };
     if (Status status = parallel_for(choices_.size(), 1, execution, find); !status.ok()) return status;
     const Borders& borders = facts_.borders;
@@ -57,8 +57,10 @@ class RatesByDistance {
     ChordBlocks::Lanes<double> left;
     left.fill(request_.tolerance);
     for (std::size_t lane = 0; lane < count; ++lane) left[lane] = left_of(patches[lane]);
+    ChordBlocks::Lanes<double> aimed = left;
+    for (double& of : aimed) of *= 1 - request_.headroom;
     ChordBlocks::Products products;
-    const ChordBlocks::Choice choice = needs_.chords().cheapest(needs_.set(), block, count, left, max_rate, products);
+    const ChordBlocks::Choice choice = needs_.chords().cheapest(needs_.set(), block, count, aimed, max_rate, products);
     for (std::size_t lane = 0; lane < count; ++lane) {
       const std::size_t k = patches[lane];
       ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
