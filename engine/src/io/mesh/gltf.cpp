@@ -12,6 +12,7 @@
 #include <streambuf>
 #include <string>
 
+#include "io/file/text_cursor.h"
 #include "io/mesh/gltf_content.h"
 #include "io/mesh/mesh_formats.h"
 #include "tessera/mesh_assembly.h"

@@ -5,6 +5,7 @@
 #include "base/function_ref.h"
 #include "base/text.h"
 #include "tessera/guard.h"
+#include "tessera/mesh_assembly.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/impl_access.h"
+#include "block/patch_set_impl.h"
 #include "tess/mesh/edited_surfaces.h"
 #include "tess/mesh/tessellation_impl.h"
 #include "tessera/guard.h"
