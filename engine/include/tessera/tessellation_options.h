@@ -45,7 +45,7 @@ struct UniformRates {
   int v = 8;  ///< segments along v of every patch, 1 to 4096
 };
 
-/// Which parameters the vertices of a mesh have, as texture coordinates for example.
+/// The parameters that vertices of a mesh have, as texture coordinates for example.
 enum class VertexParameters : std::uint8_t {
   surface,  ///< those of the surface: they run on from patch to patch of one surface (see PatchSource)
   unit,     ///< those of the surface as shares of its domain: 0 to 1 from side to side
@@ -113,7 +113,7 @@ struct TessellationOptions {
   /// suffices.
   std::optional<std::uint64_t> budget = {};
   Joining joining = {};  ///< how vertices of patches that meet become one
-  /// Which parameters vertices have. Empty: those of the surface; with share_vertices none. The parameters of patches
+  /// The parameters of vertices. Empty: those of the surface; with share_vertices none. The parameters of patches
   /// cannot be had with share_vertices.
   std::optional<VertexParameters> parameters = {};
   /// The largest number of triangles; a mesh that takes more is an error.
@@ -134,7 +134,7 @@ struct TessellationOptions {
   double spare = 0.25;
   /// Edits: the part of the tolerances that new segments leave for edits to come, from 0 to 0.9. Each patch is divided
   /// for 1 - headroom of them, and keeps its segments while edits keep them in full, so the triangles of an animation
-  /// rarely change. Cells become 1 / (1 - headroom) times as many. Not for a budget, and not for cut patches.
+  /// rarely change. Cells become 1 / (1 - headroom) times as many. Not for a budget; cut patches are cut anew anyway.
   double headroom = 0;
   std::optional<Isa> isa = {};  ///< default_isa() if empty
   /// Double: the mesh has positions in double as well, in the model's coordinates, and the bounds hold for these.

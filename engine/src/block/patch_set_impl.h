@@ -96,7 +96,7 @@ class PatchSet::Impl {
   const std::shared_ptr<const void> identity = std::make_shared<char>();
   std::uint64_t revision = 0;
   std::vector<std::uint64_t> edited;  ///< `[patch]`: the revision that its last edit made; 0 without an edit
-  /// What plans of this set share, of a type that they alone know, without and with tables of bicubic points.
+  /// Tables that plans of this set share, of a type that they alone know, without and with tables of bicubic points.
   mutable std::array<SharedSlot<void>, 2> plan_tables;
   mutable SharedSlot<PointsOnDemand<float>> f32_points;
   mutable SharedSlot<PointsOnDemand<double>> f64_points;
