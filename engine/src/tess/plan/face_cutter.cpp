@@ -148,6 +148,7 @@ void FaceCutter::choose_segments() {
   PlanRequest own = request_;
   own.uniform = true;  // triangles of the band may be as wide as the widest cell
   own.fewest = false;
+  own.headroom = 0;  // each update cuts anew
   for (std::size_t c = 0; c < rare_.cuts.size(); ++c) {
     if (!shares_.is_due(c)) continue;
     const std::size_t patch = rare_.cuts[c].patch;
