@@ -97,6 +97,37 @@ std::optional<Rates> with_u(const UniformLimits& limits, int u, int most) {
 
 }  // namespace
 
+LeastRates::LeastRates(const CellLimits& limits) {
+  double halves_u[2] = {1, 1}, halves_v[2] = {1, 1}, both[2][2] = {{1, 1}, {1, 1}};
+  const auto add = [&](const ChordBound* bound, double limit) {
+    const double scale = 1 / (8 * limit);
+    for (std::size_t i = 0; bound && i < 2; ++i)
+      for (std::size_t j = 0; j < 2; ++j) {
+        const SecondDerivatives& d = bound->pieces()[5 + 2 * i + j];
+        const double along_u = std::sqrt(scale * d.uu), along_v = std::sqrt(scale * d.vv);
+        halves_u[i] = std::max(halves_u[i], along_u);
+        halves_v[j] = std::max(halves_v[j], along_v);
+        both[i][j] = std::max(both[i][j], 2 * (along_u * along_v + scale * d.uv));
+      }
+  };
+  add(limits.chord, limits.distance);
+  add(limits.picture, limits.pixels);
+  constexpr double exact = 1 - 0x1p-16;  // more than the roundings of all bounds
+  u_ = std::ceil(exact * (halves_u[0] + halves_u[1]) / 2);
+  v_ = std::ceil(exact * (halves_v[0] + halves_v[1]) / 2);
+  products_ = exact * (both[0][0] + both[0][1] + both[1][0] + both[1][1]) / 4;
+}
+
+double LeastRates::cells() const {
+  constexpr double many = 64;
+  if (!(products_ <= many)) return std::max(products_, u_ * v_);
+  // Few cells: that rates are whole numbers is a good part of them.
+  double fewest = std::numeric_limits<double>::infinity();
+  for (double rate = u_; rate * v_ < fewest; ++rate)
+    fewest = std::min(fewest, rate * std::max(v_, std::ceil(products_ / rate)));
+  return fewest;
+}
+
 bool CellLimits::keeps(PatchSegments segments) const {
   return (!chord || chord->distance_of(segments) <= distance) && (!turning || turning->angle(segments) <= angle) &&
          (!picture || picture->distance_of(segments) <= pixels);
@@ -104,6 +135,9 @@ bool CellLimits::keeps(PatchSegments segments) const {
 
 std::optional<Rates> cheapest(const CellLimits& limits, int most) {
   const UniformLimits uniform(limits);
+  const LeastRates least(limits);
+  const double fewest = least.cells();
+  if (!(least.u() <= most)) return {};
   std::optional<Rates> best;
   const auto attempt = [&](int u) {
     const std::optional<Rates> rates = with_u(uniform, u, most);
@@ -114,13 +148,15 @@ std::optional<Rates> cheapest(const CellLimits& limits, int most) {
   // u v is large at both ends. The first pass takes steps of an eighth, the second single steps from the best, both
   // ways.
   constexpr int small = 16, patience = 4;
-  const auto may_be_fewer = [&](int u) { return !best || u < double(best->u) * best->v; };
-  for (int u = 1; u <= most && may_be_fewer(u); u += u < small ? 1 : u / 8) attempt(u);
+  const auto cells = [&] { return best ? double(best->u) * best->v : std::numeric_limits<double>::infinity(); };
+  const auto may_be_fewer = [&](int u) { return u * least.v() < cells() && fewest < cells(); };
+  const int first = static_cast<int>(least.u());
+  for (int u = first; u <= most && may_be_fewer(u); u += u < small ? 1 : u / 8) attempt(u);
   if (most > small && may_be_fewer(most)) attempt(most);
   if (!best) return best;
   const int middle = best->u;
   for (const int step : {1, -1})
-    for (int u = middle + step, left = patience; left > 0 && u >= 1 && u <= most; u += step)
+    for (int u = middle + step, left = patience; left > 0 && u >= first && u <= most && may_be_fewer(u); u += step)
       left = attempt(u) ? patience : left - 1;
   return best;
 }

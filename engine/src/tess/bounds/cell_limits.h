@@ -24,6 +24,22 @@ struct CellLimits {
   bool keeps(PatchSegments segments) const;
 };
 
+/// Bounds from below on the segments that keep the limits of distances.
+///
+/// Proof: segments with the rates p[i] in the halves of u and q[j] in those of v are at least (p[0] + p[1]) / 2 and
+/// (q[0] + q[1]) / 2. In each quarter uu / p^2 + 2 uv / (p q) + vv / q^2 <= 8 distance. So p^2 >= uu / (8 distance),
+/// and, by the means of uu / p^2 and vv / q^2, p q >= (sqrt(uu vv) + uv) / (4 distance).
+class LeastRates {
+ public:
+  explicit LeastRates(const CellLimits& limits);
+  double u() const { return u_; }  ///< the least number of segments along u
+  double v() const { return v_; }
+  double cells() const;
+
+ private:
+  double u_, v_, products_;  ///< of segments along u and v
+};
+
 /// Returns the rates of uniform segments that keep the limits with about the fewest cells; empty if none up to `most`
 /// do.
 std::optional<Rates> cheapest(const CellLimits& limits, int most);

@@ -74,9 +74,10 @@ class Needs {
 
   /// `wanted[k]` and `other[k]`: the turning over the angle, along the parameter whose rates are wanted and along the
   /// other one, in the rectangles of eighth k of the other.
-  static PieceRates by_turning(const Table& wanted, const Table& other, const PieceRates& rates) {
+  PieceRates by_turning(const Table& wanted, const Table& other, const PieceRates& rates) const {
     PieceRates needed;
     needed.fill(least_rate);
+    if (!limits_.turning) return needed;
     for (std::size_t k = 0; k < eighths; ++k) {
       const float step = 1 / rates[k];
       for (std::size_t e = 0; e < eighths; ++e) {
@@ -132,6 +133,57 @@ Grading best_grading(const Needs& needs) {
   return best;
 }
 
+/// Up to so many cells all divisions of the halves are tried.
+constexpr double tried_cells = 64;
+
+/// The rates along v that distances need in the quarters, for segments of one length in each half of u.
+class QuarterNeeds {
+ public:
+  explicit QuarterNeeds(const CellLimits& limits) : limits_(limits) {}
+
+  /// Returns the rates in the halves of v, for rates in the halves of u that are whole numbers below 2 tried_cells.
+  std::array<float, 2> along_v(double lower, double upper) {
+    const std::array<float, 4>&low = at(lower), &high = at(upper);
+    return {std::max(low[0], high[2]), std::max(low[1], high[3])};
+  }
+
+ private:
+  /// Returns the rates `[quarter]` along v for a rate along u.
+  const std::array<float, 4>& at(double rate) {
+    std::array<float, 4>& rates = rates_[static_cast<std::size_t>(rate)];
+    if (rates[0] > 0) return rates;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      double needed = 1;
+      if (limits_.chord)
+        needed = std::max(needed, limits_.chord->needed_in_quarter(limits_.distance, rate, true, quarter));
+      if (limits_.picture)
+        needed = std::max(needed, limits_.picture->needed_in_quarter(limits_.pixels, rate, true, quarter));
+      rates[index(quarter)] = static_cast<float>(std::min(needed, 4 * tried_cells));
+    }
+    return rates;
+  }
+
+  const CellLimits& limits_;
+  std::array<std::array<float, 4>, 2 * static_cast<std::size_t>(tried_cells)> rates_{};
+};
+
+/// Returns the segments of equal length in each half that keep the limits of distances with the fewest cells, but less
+/// than `cells`, at most tried_cells; empty if there are none.
+std::optional<PatchSegments> fewest_in_halves(const CellLimits& limits, double cells) {
+  QuarterNeeds needs(limits);
+  std::optional<PatchSegments> best;
+  const auto whole = [](float rate) { return static_cast<int>(std::ceil((1 + 0x1p-20f) * rate / 2)); };
+  for (int u = 2; 2 * u < cells; ++u)
+    for (int lower = 1; lower < u; ++lower) {
+      const auto [left, right] = needs.along_v(2 * lower, 2 * (u - lower));
+      const int left_count = whole(left), right_count = whole(right);
+      if (!(double(u) * (left_count + right_count) < cells)) continue;
+      cells = double(u) * (left_count + right_count);
+      best = {Segments::halves(lower, u - lower), Segments::halves(left_count, right_count)};
+    }
+  return best && limits.keeps(*best) ? best : std::nullopt;
+}
+
 /// Scales rates so that whole numbers of segments have exactly these: the nearest ones, or the next above. In each half
 /// if segments must not cross the middle.
 PieceRates rounded(PieceRates rates, bool by_halves, bool up) {
@@ -181,10 +233,30 @@ PieceRates rates_of(Segments segments) {
 
 }  // namespace
 
+bool may_have_fewer(const CellLimits& limits, double cells) {
+  const LeastRates least(limits);
+  if (least.cells() >= cells) return false;
+  if (cells > tried_cells) return true;
+  QuarterNeeds needs(limits);
+  const auto whole = [](float count) { return std::ceil((1 - 0x1p-16f) * count); };
+  for (int u = static_cast<int>(least.u()); u * least.v() < cells; ++u) {
+    const auto are_fewer = [&](int lower, int upper) {
+      const auto [left, right] = needs.along_v(lower, upper);
+      return double(u) * double(std::min(whole(left / 2) + whole(right / 2), whole(std::max(left, right)))) < cells;
+    };
+    if (u % 2 != 0 && are_fewer(u, u)) return true;
+    for (int lower = 1; lower < u; ++lower)
+      if (are_fewer(2 * lower, 2 * (u - lower))) return true;
+  }
+  return false;
+}
+
 std::optional<PatchSegments> graded_segments(const CellLimits& limits, Rates uniform) {
   const double most = (1 - min_grading_saving) * uniform.u * uniform.v;
   if (double(uniform.u) * uniform.v < min_graded_cells) return {};
   if (!limits.is_for_halves() && limits.turning->is_even()) return {};
+  if (LeastRates(limits).cells() > most) return {};
+  if (!limits.turning && most <= tried_cells) return fewest_in_halves(limits, most);
   const Needs needs(limits);
   const bool by_halves = needs.is_for_halves();
   const Grading best = best_grading(needs);

@@ -29,13 +29,12 @@ struct LocalNet {
   void place(const Camera& camera, const BezierPatch& patch) {
     rows = patch.degree_u() + 1;
     columns = patch.degree_v() + 1;
-    points.clear();
-    weights.clear();
-    for (int i = 0; i < rows; ++i)
-      for (int j = 0; j < columns; ++j) {
-        points.push_back(camera.local(patch.point(i, j)));
-        weights.push_back(patch.weight(i, j));
-      }
+    points.resize(patch.points().size());
+    std::ranges::transform(patch.points(), points.begin(), [&](const Vec3& p) { return camera.local(p); });
+    if (patch.is_rational())
+      weights.assign(patch.weights().begin(), patch.weights().end());
+    else
+      weights.assign(points.size(), 1.0);
   }
   bool is_in_front(const Camera& camera) const { return camera.orthographic() || shallowest() >= camera.nearest(); }
 
@@ -106,24 +105,33 @@ class NearestSeen {
   double margin_, depth_ = infinity;
 };
 
+/// The extent of a net in the plane of the picture.
+struct Projected {
+  Vec3 lower{infinity, infinity, 0}, upper{-infinity, -infinity, 0};
+  double lightest = infinity, heaviest = 0;  ///< weights
+  double size = 0;                           ///< the largest distance from the picture's middle, pixels
+};
+
 /// Replaces a net by its picture, with points in pixels. In perspective all points must be deeper than 0.
-void project(const Camera& camera, LocalNet& net) {
+Projected project(const Camera& camera, LocalNet& net) {
+  Projected to;
   for (std::size_t k = 0; k < net.points.size(); ++k) {
     Vec3& p = net.points[k];
-    const double depth = camera.orthographic() ? 1 : p.z;
-    p = {camera.focal() * p.x / depth, camera.focal() * p.y / depth, 0};
-    net.weights[k] *= depth;
+    const double depth = camera.orthographic() ? 1 : p.z, scale = camera.focal() / depth;
+    p = {scale * p.x, scale * p.y, 0};
+    const double weight = net.weights[k] *= depth;
+    to.lower = {std::min(to.lower.x, p.x), std::min(to.lower.y, p.y), 0};
+    to.upper = {std::max(to.upper.x, p.x), std::max(to.upper.y, p.y), 0};
+    to.lightest = std::min(to.lightest, weight);
+    to.heaviest = std::max(to.heaviest, weight);
+    to.size = std::max(to.size, p.x * p.x + p.y * p.y);
   }
+  to.size = std::sqrt(to.size);
+  return to;
 }
 
 Result<BezierPatch> patch_of(const LocalNet& net) {
   return BezierPatch::rational(net.rows - 1, net.columns - 1, net.points, net.weights);
-}
-
-double size_of(const LocalNet& net) {
-  double size = 0;
-  for (const Vec3& p : net.points) size = std::max(size, length(p));
-  return size;
 }
 
 /// Pictures of some patches of a block, for the kernel.
@@ -131,25 +139,23 @@ class PictureBlock {
  public:
   PictureBlock(int degree_u, int degree_v) : degree_u_(degree_u), degree_v_(degree_v) {
     const std::size_t count = static_cast<std::size_t>(degree_u + 1) * static_cast<std::size_t>(degree_v + 1);
-    for (std::size_t k = 0; k < 4 * lanes * count; ++k) net_[k] = k / lanes % 4 == 3 ? 1.0f : 0.0f;
+    std::fill_n(net_.data(), 4 * lanes * count, 0.0f);
+    for (std::size_t k = 0; k < count; ++k) std::fill_n(net_.data() + (4 * k + 3) * lanes, lanes, 1.0f);
   }
 
-  /// Adds a picture if float can hold it; else returns false.
-  bool add(std::size_t lane, const LocalNet& net) {
-    const auto [lightest, heaviest] = std::minmax_element(net.weights.begin(), net.weights.end());
-    if (!(*lightest >= min_weight * *heaviest && *heaviest <= largest && *heaviest >= 1 / largest)) return false;
-    Box3 box;
-    for (const Vec3& p : net.points) box.extend(p);
-    const Vec3 middle = 0.5 * (box.lower + box.upper);
-    const double size = max_abs(box.upper - box.lower);
-    if (!(size <= largest && size >= 1 / largest)) return false;
-    const double scale = std::ldexp(1, -std::ilogb(*heaviest) - 1);
-    for (std::size_t k = 0; k < net.points.size(); ++k) {
+  /// Adds the picture of a net, which project() has made, if float can hold it; else returns false.
+  bool add(std::size_t lane, const LocalNet& net, const Projected& projected) {
+    const auto [lower, upper, lightest, heaviest, size] = projected;
+    if (!(lightest >= min_weight * heaviest && heaviest <= largest && heaviest >= 1 / largest)) return false;
+    const Vec3 middle = 0.5 * (lower + upper);
+    const double width = max_abs(upper - lower);
+    if (!(width <= largest && width >= 1 / largest)) return false;
+    const double scale = std::ldexp(1, -std::ilogb(heaviest) - 1);
+    float* to = net_.data() + lane;
+    for (std::size_t k = 0; k < net.points.size(); ++k, to += 4 * lanes) {
       const double weight = scale * net.weights[k];
-      const Vec3 p = weight * (net.points[k] - middle);
-      float* const to = net_.data() + 4 * lanes * k + lane;
-      to[0] = static_cast<float>(p.x);
-      to[lanes] = static_cast<float>(p.y);
+      to[0] = static_cast<float>(weight * (net.points[k].x - middle.x));
+      to[lanes] = static_cast<float>(weight * (net.points[k].y - middle.y));
       to[3 * lanes] = static_cast<float>(weight);
     }
     return true;
@@ -215,6 +221,8 @@ Result<Camera> Camera::make(const View& view) {
   camera.focal_ = shorter / (2 * half);
   camera.half_width_ = half * view.width / shorter;
   camera.half_height_ = half * view.height / shorter;
+  camera.lean_x_ = view.orthographic ? 1 : 1 / std::sqrt(1 + camera.half_width_ * camera.half_width_);
+  camera.lean_y_ = view.orthographic ? 1 : 1 / std::sqrt(1 + camera.half_height_ * camera.half_height_);
   if (!view.orthographic) camera.near_ = view.near_distance > 0 ? view.near_distance : 1e-3 * distance;
   return camera;
 }
@@ -223,24 +231,12 @@ double Camera::steepest() const {
   return focal_ * std::sqrt(1 + half_width_ * half_width_ + half_height_ * half_height_);
 }
 
-Vec3 Camera::local(const Vec3& p) const {
-  const Vec3 from = p - eye_;
-  return {dot(from, right_), dot(from, up_), dot(from, forward_)};
-}
-
-double Camera::outside(const Vec3& p, int plane) const {
-  if (plane == 4) return near_ - p.z;
-  const double half = plane < 2 ? half_width_ : half_height_, along = plane < 2 ? p.x : p.y;
-  const double side = plane % 2 == 0 ? along : -along;
-  return orthographic_ ? side - half : (side - half * p.z) / std::sqrt(1 + half * half);
-}
-
 ScreenSpaceBound::ScreenSpaceBound(const Camera& camera, const BezierPatch& patch, double moved, double pixels) {
   LocalNet net(camera, patch);
   if (net.is_unseen(camera, moved)) return;
   const double shallowest = net.shallowest();
   const bool in_front = net.is_in_front(camera);
-  if (in_front) project(camera, net);
+  const Projected projected = in_front ? project(camera, net) : Projected();
   const Result<BezierPatch> picture =
       in_front ? patch_of(net) : Status(StatusCode::unsupported, "not in front of the eye");
   if (!picture) {
@@ -248,7 +244,7 @@ ScreenSpaceBound::ScreenSpaceBound(const Camera& camera, const BezierPatch& patc
     return;
   }
   projected_ = ChordBound(*picture).plain_pieces();
-  allow_for(camera, moved, shallowest, size_of(net));
+  allow_for(camera, moved, shallowest, projected.size);
 }
 
 void ScreenSpaceBound::allow_for(const Camera& camera, double moved, double shallowest, double size) {
@@ -275,12 +271,12 @@ void ScreenSpaceBound::find(const Camera& camera, const PatchSet::Impl& set, std
     ScreenSpaceBound& picture = pictures[patches[lane]] = ScreenSpaceBound();
     if (net.is_unseen(camera, moved[lane])) continue;
     is_open.set(lane);
-    if (!in_block || !net.is_in_front(camera)) continue;
     const double shallowest = net.shallowest();
-    project(camera, net);
-    if (!flat.add(lane, net)) continue;
+    if (!in_block || !(camera.orthographic() || shallowest >= camera.nearest())) continue;
+    const Projected projected = project(camera, net);
+    if (!flat.add(lane, net, projected)) continue;
     is_added.set(lane);
-    picture.allow_for(camera, moved[lane], shallowest, size_of(net));
+    picture.allow_for(camera, moved[lane], shallowest, projected.size);
   }
   if (is_added.any()) flat.bound();
   for (std::size_t lane = 0; lane < count; ++lane) {
@@ -316,8 +312,9 @@ void ScreenSpaceBound::bound_by_depth(const Camera& camera, const BezierPatch& p
   }
 }
 
-double ScreenSpaceBound::pixels(PatchSegments segments, double distance) const {
-  if (projected_) return ChordBound(*projected_).distance_of(segments) + moved_pixels_;
+double ScreenSpaceBound::pixels(const std::optional<ChordBound>& projected, PatchSegments segments,
+                                double distance) const {
+  if (projected) return projected->distance_of(segments) + moved_pixels_;
   return depth_ > 0 ? steepest_ * distance / (depth_ - distance) : 0;
 }
 

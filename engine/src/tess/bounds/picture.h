@@ -35,10 +35,18 @@ class Camera {
   /// Returns f sqrt(1 + |q_xy / z_q|^2) at the frame's corners.
   double steepest() const;
   /// Returns a point in the camera's axes.
-  Vec3 local(const Vec3& p) const;
+  Vec3 local(const Vec3& p) const {
+    const Vec3 from = p - eye_;
+    return {dot(from, right_), dot(from, up_), dot(from, forward_)};
+  }
   /// Returns how far a point in the camera's axes lies outside of plane 0 .. plane_count() - 1, which are those of the
   /// frame's sides and the near plane; negative inside.
-  double outside(const Vec3& p, int plane) const;
+  double outside(const Vec3& p, int plane) const {
+    if (plane == 4) return near_ - p.z;
+    const double half = plane < 2 ? half_width_ : half_height_, along = plane < 2 ? p.x : p.y;
+    const double side = plane % 2 == 0 ? along : -along;
+    return orthographic_ ? side - half : (side - half * p.z) * (plane < 2 ? lean_x_ : lean_y_);
+  }
   int plane_count() const { return orthographic_ ? 4 : 5; }
 
  private:
@@ -46,6 +54,7 @@ class Camera {
   Vec3 eye_, right_, up_, forward_;
   double focal_ = 1, near_ = 0;
   double half_width_ = 1, half_height_ = 1;  ///< half the frame's size: tangents, or lengths
+  double lean_x_ = 1, lean_y_ = 1;           ///< cosines between the frame's planes and the line of sight
   bool orthographic_ = false;
 };
 
@@ -68,8 +77,9 @@ class ScreenSpaceBound {
   double moved_pixels() const { return moved_pixels_; }
   /// Returns the total distance in space to keep; infinite if the patch is projected, or not seen.
   double distance() const { return distance_; }
-  /// Returns the pixels that segments keep, with the total distance `distance` in space.
-  double pixels(PatchSegments segments, double distance) const;
+  /// Returns the pixels that segments keep, with the total distance `distance` in space. `projected`: projected().
+  double pixels(const std::optional<ChordBound>& projected, PatchSegments segments, double distance) const;
+  double pixels(PatchSegments segments, double distance) const { return pixels(projected(), segments, distance); }
 
  private:
   void bound_by_depth(const Camera& camera, const BezierPatch& patch, double moved, double pixels);

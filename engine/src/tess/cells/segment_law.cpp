@@ -31,12 +31,18 @@ struct Run {
   std::int64_t if_equal = 0;  ///< as segments of one length
 };
 
+/// The segments of one length that some eighths take.
+std::int64_t count_if_equal(const RateNeeds& needs, std::size_t begin, std::size_t end) {
+  const Segments::Fraction most = *std::max_element(needs.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                    needs.begin() + static_cast<std::ptrdiff_t>(end));
+  return ceil_of(static_cast<std::int64_t>(end - begin) * most.numerator, Segments::parts * most.denominator);
+}
+
 /// Finds the grades of the eighths from `begin` to `end`.
 Run grade(const RateNeeds& needs, std::size_t begin, std::size_t end, Segments::Grades& grades) {
   const Segments::Fraction most = *std::max_element(needs.begin() + static_cast<std::ptrdiff_t>(begin),
                                                     needs.begin() + static_cast<std::ptrdiff_t>(end));
-  Run run;
-  run.if_equal = ceil_of(static_cast<std::int64_t>(end - begin) * most.numerator, Segments::parts * most.denominator);
+  Run run{.if_equal = count_if_equal(needs, begin, end)};
   // The largest need gets one of the larger weights, and the others weights that are not too small beside it: the
   // fewest segments have the least sum of weights in units of the largest weight.
   constexpr std::size_t tries = 8;
@@ -64,6 +70,11 @@ Run grade(const RateNeeds& needs, std::size_t begin, std::size_t end, Segments::
 
 Segments segments_for(const RateNeeds& needs, bool parts_halves) {
   constexpr std::size_t middle = Segments::parts / 2;
+  if (const std::int64_t equal = count_if_equal(needs, 0, Segments::parts); equal <= min_graded) {
+    const std::int64_t lower = count_if_equal(needs, 0, middle), upper = count_if_equal(needs, middle, Segments::parts);
+    if (!parts_halves && lower + upper >= equal) return static_cast<int>(equal);
+    return Segments::halves(static_cast<int>(lower), static_cast<int>(upper));
+  }
   Segments::Grades grades{};
   const Run all = grade(needs, 0, Segments::parts, grades);
   const bool is_graded = all.count >= min_graded && all.count < all.if_equal && all.count < Segments::max_graded;

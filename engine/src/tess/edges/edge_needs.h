@@ -33,6 +33,12 @@ struct EdgeNeeds {
 class PieceNeeds {
  public:
   void add(Segments along, bool against) {
+    if (along.is_uniform() && is_uniform()) {
+      if (along.rate() <= leading_.rate()) return;
+      for (int e = 0; e < Segments::parts; ++e) set_need(e, {along.rate(), 1});
+      leading_ = along;
+      return;
+    }
     if (against) along = along.reversed();
     bool is_above = true, is_below = true;
     for (int e = 0; e < Segments::parts; ++e) {
