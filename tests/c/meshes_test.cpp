@@ -116,6 +116,50 @@ TEST(CMesh, UpdatesFollowEdits) {
   EXPECT_EQ(topology, 1);
 }
 
+TEST(CMesh, FollowsViewsAndTolerancesOfSurfaces) {
+  const Handle<tsr_set> set = set_of(wavy_field(2, 2));
+  tsr_plan_options options;
+  tsr_plan_defaults(&options);
+  options.pixels = 0.5;
+  options.eye[2] = 30;
+  tsr_plan* made = nullptr;
+  ASSERT_C(tsr_plan_new(&made, set.get(), &options, nullptr));
+  const Handle<tsr_plan> plan(made);
+  MeshMemory memory(plan.get());
+  const tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  options.eye[2] = 5;
+  ASSERT_C(tsr_plan_set_view(plan.get(), &options));
+  std::int32_t topology = 0;
+  ASSERT_C(tsr_plan_update(plan.get(), nullptr, 0, nullptr, 0, &mesh, &topology, nullptr));
+  EXPECT_EQ(topology, 1);
+  tsr_plan_info info = sized<tsr_plan_info>();
+  ASSERT_C(tsr_plan_describe(plan.get(), &info));
+  EXPECT_GT(info.triangles, 2 * mesh.triangle_count);
+  EXPECT_LE(info.pixels, 0.5);
+  EXPECT_LE(info.seen_bound, info.bound);
+  options.width = 0;
+  EXPECT_EQ(tsr_plan_set_view(plan.get(), &options), TSR_INVALID_ARGUMENT);
+  EXPECT_EQ(tsr_plan_set_view(plan.get(), nullptr), TSR_INVALID_ARGUMENT);
+
+  tsr_plan_defaults(&options);
+  const std::vector<double> tolerances(5, 1e-2);
+  options.surface_tolerances = tolerances.data();
+  tsr_set_info of_set = sized<tsr_set_info>();
+  ASSERT_C(tsr_set_describe(set.get(), &of_set));
+  options.surface_tolerance_count = of_set.surfaces;
+  options.headroom = 0.5;
+  ASSERT_C(tsr_plan_new(&made, set.get(), &options, nullptr));
+  const Handle<tsr_plan> other(made);
+  ASSERT_C(tsr_plan_describe(other.get(), &info));
+  EXPECT_EQ(info.tolerance, 1e-2);
+  EXPECT_LE(info.bound, 0.51e-2);
+  options.surface_tolerance_count = of_set.surfaces + 1;
+  EXPECT_EQ(tsr_plan_new(&made, set.get(), &options, nullptr), TSR_COUNT_MISMATCH);
+  options.surface_tolerances = nullptr;
+  EXPECT_EQ(tsr_plan_new(&made, set.get(), &options, nullptr), TSR_INVALID_ARGUMENT);
+}
+
 TEST(CMesh, ChecksAndFiles) {
   const ScratchFolder folder;
   const Handle<tsr_set> set = set_of(wavy_field(2, 2));

@@ -124,6 +124,31 @@ TEST(EditedSurfaces, PointsFollowEachOtherWithoutANewSpline) {
   body.expect_as_anew();
 }
 
+TEST(EditedSurfaces, ASetTakesThemWithoutAPlan) {
+  Followed body(splines()[1], {.tolerance = 0.03});
+  for (int turn = 1; turn <= 5; ++turn) {
+    const std::vector<std::uint32_t> moved{3, 17};
+    for (const std::uint32_t at : moved) body.points[0][at].z += 0.1;
+    for (Vec3& p : body.points[1]) p.x *= 1.01;
+    const std::vector<SurfaceEdits> edits{body.edit(0, moved), body.edit(1)};
+    const Status status = set_control_points(body.set, edits);
+    EXPECT_TRUE(status.ok()) << status.message();
+    EXPECT_EQ(body.set.revision(), static_cast<std::uint64_t>(turn));
+    const MeshChange change = good(body.plan.update(body.set, body.mesh.views()));
+    if (change.topology) body.mesh = mesh_of(body.set, body.plan);
+    body.expect_as_anew();
+  }
+  std::vector<Vec3> wrong = body.points[1];
+  wrong[0].y = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<SurfaceEdits> edits{body.edit(0), {.spline = body.splines[1], .points = wrong, .surface = 2}};
+  const Status refused = set_control_points(body.set, edits);
+  EXPECT_EQ(refused.code(), StatusCode::non_finite);
+  EXPECT_EQ(refused.index(), 1);
+  EXPECT_EQ(body.set.revision(), 5u);
+  const std::vector<SurfaceEdits> unknown{{.spline = body.splines[0], .points = body.points[0], .surface = 7}};
+  EXPECT_EQ(set_control_points(body.set, unknown).code(), StatusCode::invalid_argument);
+}
+
 TEST(EditedSurfaces, BadEditsAreRefusedBeforeAnythingIsWritten) {
   Followed body(splines()[0], {.tolerance = 0.03});
   const Mesh before = body.mesh;

@@ -35,6 +35,16 @@ struct SurfaceEdits {
   Affine placement = {};      ///< maps the control points into the set
 };
 
+/// Sets the control points of a set's patches without a plan: converts those that the moved points act on, to the same
+/// bits as make_patch_set(). Plans, grids and scenes of the set follow as after PatchSet::set_control_points().
+///
+/// Errors, with the set unchanged (index = the edit): invalid_argument (the set's patches of this surface are not those
+/// of the spline; a surface that an edit before names; no such control point), count_mismatch (control points),
+/// non_finite (a point), cancelled, out_of_memory.
+///
+/// The revision grows by one, unless no patch changes.
+Status set_control_points(PatchSet& set, std::span<const SurfaceEdits> edits, const Execution& execution = {});
+
 /// The changes of an update besides the vertices.
 struct MeshChange {
   /// Whether the mesh has other triangles or vertices than before. If so, nothing was written, and the plan is that of
@@ -78,14 +88,16 @@ class Tessellation {
   ///
   /// Errors:
   /// - invalid_argument (neither rates nor a tolerance of any kind, or both; a rate out of range; a tolerance that is
-  ///   not above 0)
+  ///   not above 0, index = the surface if it is that of one)
+  /// - count_mismatch (not one tolerance for each surface)
   /// - invalid_argument (tolerances that no patch keeps, see patches_beyond_tolerance(); the message names about the
   ///   smallest one that all keep, or how many triangles it takes)
   /// - invalid_argument (a view without a picture; a weld, a crease angle or `spare` out of range)
   /// - invalid_argument (more triangles or vertices than the limits; the message says how many triangles the mesh
   ///   takes)
   /// - invalid_argument (max_triangles below what one cell per patch takes)
-  /// - unsupported (the set has no float Bernstein blocks; it has cut patches, and rates are wanted)
+  /// - unsupported (the set has no float Bernstein blocks; it has cut patches, and rates or a border tolerance are
+  ///   wanted; it has edges that close, and a border tolerance is wanted)
   /// - isa_unavailable, cancelled
   static Result<Tessellation> make(const PatchSet& set, const TessellationOptions& options,
                                    const Execution& execution = {});
@@ -98,6 +110,8 @@ class Tessellation {
   /// It is at most the tolerance, unless there are patches_beyond_tolerance(). Like all bounds of a plan it holds for
   /// the set and the revision that the plan was made or updated for.
   double bound() const;
+  /// Returns the same of the patches that the view sees, whose pixel_bounds() are above 0; bound() without pixels.
+  double seen_bound() const;
   /// Whether the bounds are proven; false with rates, and where the set's fit error is only sampled.
   bool certified() const;
   /// Returns the distance that the plan keeps: the tolerance, as a length, or the smallest one that make() found.
@@ -154,6 +168,14 @@ class Tessellation {
   /// unless execution.stores is plain. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
+  /// Takes the view that the next update plans for, with or without edits. The plan, its bounds and what run() writes
+  /// stay those of the view before until then. Errors, with nothing changed: invalid_argument (a view without a
+  /// picture; the plan has no tolerance in pixels).
+  ///
+  ///   plan->set_view(camera);  // each frame
+  ///   auto change = plan->update(set, mesh.views());
+  ///   if (change && change->topology) mesh = *plan->allocate(), plan->run(set, mesh.views());
+  Status set_view(const View& view);
   /// Follows edits: sets new control points, proves the tolerances again, and moves the vertices of these patches.
   ///
   /// - `set`: the set of the plan. Patches that set_control_points() has edited since the last update are followed too.
@@ -185,10 +207,14 @@ class Tessellation {
   /// Later updates allocate nothing if distances are the only tolerance and the topology is unchanged, except for a
   /// patch with a border that welding made a point.
   ///
-  /// Time: what the edited patches take, unless the topology changes or `fewest` is set and a patch cannot keep its
+  /// Time: what the edited patches take, and for a new view about a fifth of a new plan, unless the topology changes or `fewest` is set and a patch cannot keep its
   /// segments; both take up to the time of a new plan.
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                             const Execution& execution = {});
+  /// Follows a new view, and the edits that the set has had since the last update, as above.
+  Result<MeshChange> update(PatchSet& set, const MeshViews& out, const Execution& execution = {}) {
+    return update(set, PatchEdits{}, out, execution);
+  }
   /// Follows edits of spline surfaces: converts the patches that the moved control points act on, to the same bits as
   /// make_patch_set(), and updates as above.
   ///

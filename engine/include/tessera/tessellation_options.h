@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
@@ -83,8 +84,8 @@ struct Joining {
   std::optional<double> max_gap = {};
 };
 
-/// How finely patches are divided, and how they are joined: either `rates`, or any of a distance (`tolerance` or
-/// `budget`), an angle and pixels.
+/// How finely patches are divided, and how they are joined: either `rates`, or any of a distance (`tolerance`,
+/// `surface_tolerances` or `budget`), an angle and pixels.
 struct TessellationOptions {
   /// Divides every patch at these rates, and proves nothing. Only `parameters`, `quads` and `isa` count beside it: a
   /// tolerance of any kind is an error.
@@ -92,7 +93,11 @@ struct TessellationOptions {
   /// The largest distance between surfaces and mesh, in the model's lengths, above 0: every point of either lies within
   /// this distance of the other.
   std::optional<double> tolerance = {};
-  /// Whether the tolerance is a share of the diagonal of PatchSet::model_box(), in make(), instead of a length.
+  /// The largest distance of each surface, by PatchSource::surface, instead of `tolerance`, so that one mesh without
+  /// cracks holds what is near and what is far: each above 0. Where surfaces meet, both have the vertices of the finer
+  /// one. Tessellation::tolerance() is the largest.
+  std::vector<double> surface_tolerances = {};
+  /// Whether tolerances are shares of the diagonal of PatchSet::model_box(), in make(), instead of lengths.
   bool relative = false;
   /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2.
   ///

@@ -229,7 +229,6 @@ tsr_status tsr_set_evaluate(const tsr_set* set, const tsr_in* surface, const tsr
 /* --- Meshes ------------------------------------------------------------------------------------------------------ */
 /* How a set is divided into triangles. */
 typedef struct tsr_plan tsr_plan;
-
 enum {
   TSR_PLAN_RELATIVE = 1,     /* the tolerance is a share of the set's size */
   TSR_PLAN_SHARE = 2,        /* patches share the vertices of their borders by index */
@@ -242,7 +241,7 @@ enum {
   TSR_PLAN_UV_UNIT = 256,    /* as shares of its domain */
   TSR_PLAN_UV_PATCH = 512    /* of the patch: not with TSR_PLAN_SHARE */
 };
-/* At least one of tolerance, angle, pixels and TSR_PLAN_SMALLEST is needed, or rates alone. */
+/* At least one of tolerance(s), angle, pixels and TSR_PLAN_SMALLEST is needed, or rates alone. */
 typedef struct tsr_plan_options {
   size_t struct_size;
   double tolerance; /* the largest distance between surfaces and mesh, proven; 0 (default): none */
@@ -261,6 +260,9 @@ typedef struct tsr_plan_options {
   double max_gap;         /* edges with faces farther apart stay open; below 0 (default): none */
   double spare;           /* cells that an edited patch may have too many, as a share; 0.25 by default */
   uint64_t max_triangles; /* 2^30 by default */
+  double headroom;        /* the part of the tolerances that is left for updates, 0 (default) to 0.9 */
+  const double* surface_tolerances; /* instead of `tolerance`, for each surface of the set; NULL (default): none */
+  size_t surface_tolerance_count;
 } tsr_plan_options;
 void tsr_plan_defaults(tsr_plan_options* options);
 tsr_status tsr_plan_new(tsr_plan** plan, const tsr_set* set, const tsr_plan_options* options, const tsr_run* run);
@@ -274,6 +276,7 @@ typedef struct tsr_plan_info {
   int32_t is_certified, has_normals;
   uint64_t open_edges;      /* edges of one triangle */
   uint64_t crossed_patches; /* left out, since their loops are no polygon */
+  double seen_bound;        /* with pixels: `bound` of the patches that the view sees; else `bound` */
 } tsr_plan_info;
 tsr_status tsr_plan_describe(const tsr_plan* plan, tsr_plan_info* info);
 /* A mesh in the caller's memory. Null data: not wanted. */
@@ -289,11 +292,12 @@ typedef struct tsr_mesh {
 } tsr_mesh;
 /* Writes the mesh of the plan's set; positions and triangles are required. Errors: TSR_BUFFER_TOO_SMALL, TSR_STALE. */
 tsr_status tsr_plan_write(const tsr_plan* plan, const tsr_mesh* mesh, const tsr_run* run);
+/* Takes the view, `eye` to `height`, that the next tsr_plan_update() plans for, with or without edits. */
+tsr_status tsr_plan_set_view(tsr_plan* plan, const tsr_plan_options* view);
 /* Sets control points as tsr_set_edit(), proves the tolerances again, and moves the mesh that was written. *topology is
  * 1 if the mesh has other triangles now: nothing was written, describe and write again. */
 tsr_status tsr_plan_update(tsr_plan* plan, const uint32_t* patches, size_t count, const double* points,
                            size_t point_count, const tsr_mesh* mesh, int32_t* topology, const tsr_run* run);
-
 typedef struct tsr_mesh_report {
   size_t struct_size;
   uint64_t vertices, distinct_positions, triangles, quads;
@@ -311,10 +315,8 @@ tsr_status tsr_model_save_meshes(const tsr_model* model, const tsr_mesh* const* 
                                  size_t count, const char* path);
 
 /* --- Rays -------------------------------------------------------------------------------------------------------- */
-
 /* A set prepared for rays, which meet the surfaces themselves, within their trimming loops. */
 typedef struct tsr_scene tsr_scene;
-
 typedef struct tsr_scene_options {
   size_t struct_size;
   double tolerance;    /* how far a point may lie from the ray, a length; 0 (default): 2e-12 of the size */
@@ -325,7 +327,6 @@ void tsr_scene_defaults(tsr_scene_options* options);
 tsr_status tsr_scene_new(tsr_scene** scene, const tsr_set* set, const tsr_scene_options* options, const tsr_run* run);
 /* Follows edits of the set. */
 tsr_status tsr_scene_refit(tsr_scene* scene, const tsr_run* run);
-
 typedef struct tsr_scene_info {
   size_t struct_size;
   uint64_t memory_bytes;
@@ -333,7 +334,6 @@ typedef struct tsr_scene_info {
   double spawn_offset;    /* tsr_rays.spawn_offset for rays that start on a surface */
 } tsr_scene_info;
 tsr_status tsr_scene_describe(const tsr_scene* scene, tsr_scene_info* info);
-
 /* Rays origin + t * direction, tnear <= t <= tfar. One ray for each record of `direction`; other views with 1 record
  * hold for all rays. A ray that is not valid is a miss. */
 typedef struct tsr_rays {

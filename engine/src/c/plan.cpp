@@ -11,6 +11,18 @@ namespace tessera { inline namespace abi_0_1 { namespace {
 
 Vec3 vector_of(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
 
+View view_of(const tsr_plan_options& from) {
+  return {.eye = vector_of(from.eye),
+          .target = vector_of(from.target),
+          .up = vector_of(from.up),
+          .orthographic = from.extent != 0,
+          .field_of_view = from.field_of_view,
+          .extent = from.extent != 0 ? from.extent : 1,
+          .width = from.width,
+          .height = from.height,
+          .near_distance = from.near_distance};
+}
+
 CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
   constexpr std::uint32_t known = TSR_PLAN_RELATIVE | TSR_PLAN_SHARE | TSR_PLAN_QUADS | TSR_PLAN_FEWEST |
                                   TSR_PLAN_SMALLEST | TSR_PLAN_DOUBLE | TSR_PLAN_APART | TSR_PLAN_UV_SURFACE |
@@ -20,17 +32,10 @@ CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
   if (from.rate_u != 0 || from.rate_v != 0) to.rates = UniformRates{from.rate_u, from.rate_v};
   if (from.tolerance != 0) to.tolerance = from.tolerance;
   if (from.angle != 0) to.angle = from.angle;
-  if (from.pixels != 0)
-    to.pixels = PixelTolerance{.pixels = from.pixels,
-                               .view = {.eye = vector_of(from.eye),
-                                        .target = vector_of(from.target),
-                                        .up = vector_of(from.up),
-                                        .orthographic = from.extent != 0,
-                                        .field_of_view = from.field_of_view,
-                                        .extent = from.extent != 0 ? from.extent : 1,
-                                        .width = from.width,
-                                        .height = from.height,
-                                        .near_distance = from.near_distance}};
+  if (from.pixels != 0) to.pixels = PixelTolerance{.pixels = from.pixels, .view = view_of(from)};
+  if (from.surface_tolerance_count > 0 && !from.surface_tolerances) return null_pointer("surface_tolerances");
+  to.surface_tolerances.assign(from.surface_tolerances, from.surface_tolerances + from.surface_tolerance_count);
+  to.headroom = from.headroom;
   if (!(from.weld < 0)) to.joining.weld = from.weld;
   if (!(from.crease_angle < 0)) to.joining.crease_angle = from.crease_angle;
   if (!(from.max_gap < 0)) to.joining.max_gap = from.max_gap;
@@ -101,7 +106,7 @@ tsr_status tsr_plan_describe(const tsr_plan* plan, tsr_plan_info* info) {
     tsr_plan_info filled{};
     filled.vertices = size.vertices, filled.triangles = size.triangles, filled.quads = size.quads;
     filled.tolerance = from.tolerance(), filled.bound = from.bound(), filled.gap = from.gap();
-    filled.angle = from.angle(), filled.pixels = from.pixels();
+    filled.angle = from.angle(), filled.pixels = from.pixels(), filled.seen_bound = from.seen_bound();
     filled.is_certified = from.certified(), filled.has_normals = of->has_normals;
     filled.open_edges = from.open_edges(), filled.crossed_patches = from.crossed_patches().size();
     return write_struct("tsr_plan_info", info, filled);
@@ -120,6 +125,20 @@ tsr_status tsr_plan_write(const tsr_plan* plan, const tsr_mesh* mesh, const tsr_
     const Reading of_set(of->set->usage);
     if (!of_set) return in_use(Object::Kind::set);
     return run_work(run, [&](const Execution& execution) { return of->plan.run(of->set->set, views, execution); });
+  });
+}
+
+tsr_status tsr_plan_set_view(tsr_plan* plan, const tsr_plan_options* view) {
+  return c_call([&]() -> CStatus {
+    const Held<CPlan> of(plan);
+    if (!of) return of.error();
+    tsr_plan_options own;
+    tsr_plan_defaults(&own);
+    if (!view) return null_pointer("view");
+    if (CStatus status = read_struct("tsr_plan_options", view, own); status.code) return status;
+    const Changing changing(of->usage);
+    if (!changing) return in_use(Object::Kind::plan);
+    return of->plan.set_view(view_of(own));
   });
 }
 

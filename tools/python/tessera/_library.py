@@ -28,9 +28,10 @@ _STRUCTS = {
     "tsr_plan_options": "double tolerance, double angle, double pixels, double eye[3], double target[3], double up[3], "
     "double field_of_view, double extent, double near_distance, int32 width, int32 height, int32 rate_u, "
     "int32 rate_v, uint32 flags, uint32 reserved, double weld, double crease_angle, double max_gap, double spare, "
-    "uint64 max_triangles",
+    "uint64 max_triangles, double headroom, pointer surface_tolerances, size surface_tolerance_count",
     "tsr_plan_info": "uint64 vertices, uint64 triangles, uint64 quads, double tolerance, double bound, double gap, "
-    "double angle, double pixels, int32 is_certified, int32 has_normals, uint64 open_edges, uint64 crossed_patches",
+    "double angle, double pixels, int32 is_certified, int32 has_normals, uint64 open_edges, uint64 crossed_patches, "
+    "double seen_bound",
     "tsr_mesh": "tsr_out position, tsr_out normal, tsr_out parameter, tsr_out position_f64, pointer triangles, "
     "pointer triangle_patches, pointer quads, pointer quad_patches, size triangle_count, size quad_count",
     "tsr_mesh_report": "uint64 vertices, uint64 distinct_positions, uint64 triangles, uint64 quads, uint64 open_edges, "
@@ -76,6 +77,7 @@ _FUNCTIONS = {
     "tsr_plan_new": "ipppp",
     "tsr_plan_describe": "ipp",
     "tsr_plan_write": "ippp",
+    "tsr_plan_set_view": "ipp",
     "tsr_plan_update": "ippspsppp",
     "tsr_mesh_check": "ipp",
     "tsr_mesh_save": "ippz",

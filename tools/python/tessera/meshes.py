@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import address_of, integer_of, out_view, pair_of, vectors_of
+from ._arrays import address_of, array_of, integer_of, out_view, pair_of, vectors_of
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError, StateError
@@ -61,9 +61,10 @@ class _Plan(Handle):
     def __init__(self, patches: Handle, wanted: dict[str, Any], progress: Progress | None) -> None:
         options = struct("tsr_plan_options")
         library.tsr_plan_defaults(ctypes.byref(options))
-        _fill(options, wanted)
+        kept = _fill(options, wanted)
         is_long = (wanted.get("rates") is None and patches._info().patches > _LONG) or wanted.get("fewest", False)
         self._make(library.tsr_plan_new, patches._handle, ctypes.byref(options), progress=progress, is_long=is_long)
+        del kept  # the options point into it
 
 
 MAX_RATE, MAX_PIXELS = 4096, 1 << 20
@@ -71,9 +72,15 @@ _VIEWED = 5e-4  # of the size: less than a pixel of the view in notebooks
 _LONG = 200  # patches, below which a plan is made at once
 
 
-def _fill(options: Any, wanted: dict[str, Any]) -> None:
-    """Fills a tsr_plan_options. ``wanted``: options of PatchSet.tessellate(), and its defaults where one is missing."""
-    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap")
+def _fill(options: Any, wanted: dict[str, Any]) -> np.ndarray | None:
+    """Fills a tsr_plan_options. ``wanted``: options of PatchSet.tessellate(), and its defaults where one is missing.
+    Returns the memory of tolerances that the options point into."""
+    of_surfaces = None
+    if np.ndim(wanted.get("tolerance")) > 0:
+        of_surfaces = np.ascontiguousarray(array_of("tolerance", wanted["tolerance"])).ravel()
+        options.surface_tolerances, options.surface_tolerance_count = address_of(of_surfaces), len(of_surfaces)
+        wanted = {**wanted, "tolerance": None}
+    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap", "headroom")
     for name in limits:
         if wanted.get(name) is not None:
             try:
@@ -84,7 +91,9 @@ def _fill(options: Any, wanted: dict[str, Any]) -> None:
         options.max_triangles = integer_of("max_triangles", wanted["max_triangles"], 1, 2**64 - 1)
     if wanted.get("rates") is not None:
         options.rate_u, options.rate_v = pair_of("rates", wanted["rates"], 1, MAX_RATE)
-    is_limited = any(wanted.get(name) is not None for name in ("tolerance", "angle", "pixels", "rates"))
+    is_limited = of_surfaces is not None or any(
+        wanted.get(name) is not None for name in ("tolerance", "angle", "pixels", "rates")
+    )
     flags = {
         _RELATIVE: wanted.get("relative"),
         _SHARE: wanted.get("share_vertices"),
@@ -102,8 +111,12 @@ def _fill(options: Any, wanted: dict[str, Any]) -> None:
     view = wanted.get("view")
     if wanted.get("pixels") is not None and view is None:
         raise ArgumentError("pixels: expected a view beside it: view=View(eye=..., target=...)")
-    if view is None:
-        return
+    if view is not None:
+        _fill_view(options, view)
+    return of_surfaces
+
+
+def _fill_view(options: Any, view: View) -> None:
     for name in ("eye", "target", "up"):
         vector = vectors_of(f"view.{name}", getattr(view, name))
         if vector.shape != (3,):
@@ -223,14 +236,21 @@ class Mesh:
             mesh.quad_count = len(self.quads)
         return mesh
 
-    def update(self, progress: Progress | None = None) -> bool:
-        """Follows edits of the patches: proves the limits again and moves the vertices. Returns whether the mesh has
-        other triangles now; then its arrays are new views."""
+    def update(self, progress: Progress | None = None, *, view: View | None = None) -> bool:
+        """Follows edits of the patches, and a ``view`` in the place of the one before: proves the limits again and
+        moves the vertices. Returns whether the mesh has other triangles now; then its arrays are new views."""
         if self._set is None:
             raise StateError("the mesh was not made of patches", "stale")
+        if view is not None:
+            self._wanted = {**self._wanted, "view": view}
         if self._plan is None:  # a mesh that was pickled
             self._make(self._set, self._wanted, progress)
             return True
+        if view is not None:
+            options = struct("tsr_plan_options")
+            library.tsr_plan_defaults(ctypes.byref(options))
+            _fill_view(options, view)
+            call(library.tsr_plan_set_view, self._plan._handle, ctypes.byref(options))
         topology = ctypes.c_int32()
         run(
             library.tsr_plan_update,

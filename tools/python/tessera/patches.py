@@ -152,7 +152,7 @@ class PatchSetBase(Handle):
 
     def tessellate(
         self,
-        tolerance: float | None = None,
+        tolerance: float | Sequence[float] | np.ndarray | None = None,
         *,
         relative: bool = False,
         angle: float | None = None,
@@ -168,13 +168,15 @@ class PatchSetBase(Handle):
         max_triangles: int | None = None,
         close_edges: bool = True,
         uv: str | None = None,
+        headroom: float = 0,
         dtype: Any = np.float32,
         out: Mesh | None = None,
         progress: Progress | None = None,
     ) -> Mesh:
         """Returns a mesh that keeps the limits, which is proven.
 
-        - ``tolerance``: the largest distance between surfaces and mesh, a length; with ``relative`` a share of the size
+        - ``tolerance``: the largest distance between surfaces and mesh, a length; with ``relative`` a share of the size;
+          or one for each surface
         - ``angle``: the largest turn of the normals in a triangle, in radians, up to pi/2
         - ``pixels``: the largest distance in the picture of ``view``
         - ``rates``: segments of every patch per direction, which prove nothing
@@ -184,6 +186,7 @@ class PatchSetBase(Handle):
           and faces meet
         - ``uv``: "surface" (default), "unit" or "patch": parameters of the surface, as shares of its domain, or of the
           patch; with ``share_vertices`` none by default, and with "surface" or "unit" vertices are apart across seams
+        - ``headroom``: the part of the limits left for Mesh.update(), 0 to 0.9, so that it rarely changes triangles
         - ``dtype=np.float64``: vertices in double, in the model
         - ``out``: an earlier mesh, to write into the same memory if it is large enough
         - ``progress``: called with a share from 0 to 1; an exception in it ends the call

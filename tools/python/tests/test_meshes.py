@@ -52,6 +52,43 @@ def test_options():
     assert 0 < patches.tessellate(pixels=0.5, view=view).pixels <= 0.5
 
 
+def test_a_view_that_moves():
+    patches = ts.bezier(wavy(4, 4)).patches()
+
+    def view(distance):
+        return ts.View(eye=(2, 2, distance), target=(2, 2, 0), up=(0, 1, 0))
+
+    mesh = patches.tessellate(pixels=0.5, view=view(20))
+    far = len(mesh.faces)
+    assert mesh.update(view=view(6)) and len(mesh.faces) > 2 * far and 0 < mesh.pixels <= 0.5
+    assert not mesh.update() and not mesh.update(view=view(6.01))
+    assert mesh.update(view=view(20)) and len(mesh.faces) <= 1.25 * far
+    with pytest.raises(ts.ArgumentError, match="same point"):
+        mesh.update(view=ts.View(eye=(0, 0, 0), target=(0, 0, 0)))
+    with pytest.raises(ts.ArgumentError, match="no tolerance in pixels"):
+        patches.tessellate(1e-2).update(view=view(6))
+
+
+def test_a_tolerance_for_each_surface():
+    patches = ts.bezier(wavy(2, 2)).patches()  # each patch is a surface
+    mesh = patches.tessellate([1e-4, 1e-2, 1e-2, 1e-2])
+    counts = np.bincount(mesh.patches)
+    assert mesh.is_certified and mesh.bound <= 1e-2 and counts[0] > 5 * counts[3]
+    assert not mesh.update()
+    assert (patches.tessellate(np.full(8, 1e-2)[::2]).faces == patches.tessellate(1e-2).faces).all()
+    with pytest.raises(ts.ArgumentError, match="surface 1 is 0"):
+        patches.tessellate([0.1, 0.0, 0.1, 0.1])
+    with pytest.raises(ts.ArgumentError, match="4 surfaces, found 5"):
+        patches.tessellate([0.1] * 5)
+
+
+def test_headroom():
+    patches = ts.bezier(wavy(3, 3)).patches()
+    assert patches.tessellate(1e-2, headroom=0.5).bound <= 0.51e-2
+    with pytest.raises(ts.ArgumentError, match="headroom"):
+        patches.tessellate(1e-2, headroom=1)
+
+
 @pytest.mark.parametrize(
     "options, words",
     [

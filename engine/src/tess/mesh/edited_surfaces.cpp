@@ -3,7 +3,13 @@
 #include <algorithm>
 #include <string>
 
+#include "base/impl_access.h"
+#include "eval/patch_edits.h"
 #include "eval/touched_blocks.h"
+#include "kernel/table/kernel_table.h"
+#include "parallel/parallel_for.h"
+#include "tess/bounds/task_size.h"
+#include "tessera/guard.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -90,6 +96,27 @@ Status EditedSurfaces::finish(const PatchSet& set, std::span<const SurfaceEdits>
   const std::uint32_t surface = set.source(patches_[static_cast<std::size_t>(status.index())]).surface;
   const auto found = std::ranges::find_if(edits, [&](const SurfaceEdits& edit) { return edit.surface == surface; });
   return {status.code(), status.message(), found - edits.begin()};
+}
+
+Status set_control_points(PatchSet& set, std::span<const SurfaceEdits> edits, const Execution& execution) {
+  return guarded([&]() -> Status {
+    EditedSurfaces surfaces;
+    const Result<PatchEdits> patches = surfaces.convert(set, edits, execution);
+    if (!patches) return patches.status();
+    PatchSet::Impl& inner = impl_of(set);
+    TouchedBlocks touched(inner);
+    Status status = touched.add(inner, *patches);
+    if (status.ok()) status = prepare_edits(inner, *patches, touched, execution);
+    if (!status.ok()) return surfaces.finish(set, edits, status);
+    const kernel::KernelTable& kernels = kernel::default_kernels();
+    const auto pack = [&](std::size_t begin, std::size_t end) {
+      for (const std::uint32_t block : touched.blocks().subspan(begin, end - begin))
+        pack_edits(inner, *patches, touched, kernels, block);
+    };
+    (void)parallel_for(touched.blocks().size(), blocks_per_task, {}, pack);
+    finish_edits(inner, *patches);
+    return {};
+  });
 }
 
 }}  // namespace tessera::abi_0_1

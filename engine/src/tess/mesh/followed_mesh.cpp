@@ -55,6 +55,15 @@ Status ProvenMesh::start_proofs(const PatchSet& set, const Execution& execution)
   return {};
 }
 
+Status ProvenMesh::set_view(const View& view) {
+  if (!options_.pixels) return Impl::set_view(view);
+  const Result<Camera> camera = Camera::make(view);
+  if (!camera) return camera.status();
+  options_.pixels->view = view;
+  is_view_new_ = true;
+  return {};
+}
+
 Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                       const Execution& execution) {
   PatchSet::Impl& inner = impl_of(set);
@@ -65,7 +74,10 @@ Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, co
   const bool is_known = update_ || inner.revision == revision_;
   if (!update_)
     if (Status status = start_proofs(set, execution); !status.ok()) return status;
-  update_->begin();
+  if (is_view_new_)
+    update_->begin(*Camera::make(options_.pixels->view));
+  else
+    update_->begin();
   if (inner.revision != revision_) touch_edited(inner);
   for (const std::uint32_t patch : edits.patch) update_->touch(inner, patch);
   const auto proven = [&]() -> Result<PlanUpdate::Outcome> {
@@ -89,6 +101,7 @@ Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, co
   if (!change.topology)
     if (Status status = write_touched(inner, out, progress.loops()); !status.ok()) return status;
   revision_ = inner.revision;
+  is_view_new_ = false;
   (void)progress.finish({});
   return change;
 }
@@ -109,6 +122,7 @@ Result<MeshChange> ProvenMesh::update_anew(PatchSet& set, const PatchEdits& edit
   const bool is_same = plan_.has_triangles_of((*next)->plan_);
   const std::size_t changed = replace(**next);
   revision_ = inner.revision;
+  is_view_new_ = false;
   if (is_same)
     if (Status status = write_again(set, out, {.cancel = execution.cancel}); !status.ok()) return status;
   return MeshChange{!is_same, is_same ? changed : std::max<std::size_t>(changed, 1)};
@@ -131,7 +145,7 @@ void ProvenMesh::touch_edited(const PatchSet::Impl& set) {
 
 Result<std::size_t> ProvenMesh::redivide(const PatchSet& set, PlanUpdate::Outcome outcome, const Execution& execution) {
   // Borders that edits have moved apart are joined no longer once the topology is made anew: that needs new edges.
-  if (outcome == PlanUpdate::Outcome::redivided && update_->facts().borders.directions(update_->facts().needs).hold()) {
+  if (outcome == PlanUpdate::Outcome::redivided && update_->borders_hold()) {
     CertifiedPlan plan = update_->redivided(of(impl_of(set)));
     const MeshCapacity size = plan.capacity();
     if (size.triangles <= options_.max_triangles && size.vertices <= max_vertices) {
@@ -174,9 +188,9 @@ std::size_t ProvenMesh::changed_patches(const ProvenMesh& other) const {
   compare(weld_.borders, other.weld_.borders);
   compare(weld_.corners, other.weld_.corners);
   compare(weld_.poles, other.weld_.poles);
-  compare(joins_.borders, other.joins_.borders);
-  compare(joins_.corners, other.joins_.corners);
-  compare(joins_.poles, other.joins_.poles);
+  compare(joins().borders, other.joins().borders);
+  compare(joins().corners, other.joins().corners);
+  compare(joins().poles, other.joins().poles);
   return static_cast<std::size_t>(std::count(changed.begin(), changed.end(), 1));
 }
 

@@ -25,6 +25,7 @@ class MergedMesh final : public Tessellation::Impl {
   MeshCapacity before(std::size_t) const override { return {}; }  // patches have no vertices of their own
   Mesh allocate() const override;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
+  Status set_view(const View& view) override { return own_->set_view(view); }
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                             const Execution& execution) override;
 

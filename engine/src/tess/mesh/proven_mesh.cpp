@@ -175,10 +175,11 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const
     if (!status.ok()) return status;
   }
   const bool splits = options_.joining.share_vertices && has_parameters();
-  joins_ = find_joins(set, plan_, facts.borders.edges(), weld_, options_.joining.crease_angle ? &views.normal : nullptr,
-                      options_.joining.crease_angle.value_or(0), splits ? &maps : nullptr);
+  joins_ = std::make_unique<VertexCopies>(find_joins(
+      set, plan_, facts.borders.edges(), weld_, options_.joining.crease_angle ? &views.normal : nullptr,
+      options_.joining.crease_angle.value_or(0), splits ? &maps : nullptr));
   if (!options_.joining.share_vertices) return {};
-  plan_.share(joins_);
+  plan_.share(*joins_);
   weld_shared_corners();
   return {};
 }
@@ -222,7 +223,7 @@ Status ProvenMesh::write_copies(const PatchSet::Impl& set, const MeshViews& out,
                                 FunctionRef<bool(std::size_t patch)> is_written) const {
   if (Status status = write_welded(weld_, plan_, set, out, execution, is_written); !status.ok()) return status;
   if (plan_.shares_vertices() || out.normal.empty()) return {};
-  return write_joined_normals(joins_, plan_, out.normal, execution, is_written);
+  return write_joined_normals(joins(), plan_, out.normal, execution, is_written);
 }
 
 Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {

@@ -39,6 +39,7 @@ class ProvenMesh final : public Tessellation::Impl {
   }
   Mesh allocate() const override;
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const override;
+  Status set_view(const View& view) override;
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                             const Execution& execution) override;
 
@@ -60,8 +61,12 @@ class ProvenMesh final : public Tessellation::Impl {
   Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
                       FunctionRef<bool(std::size_t patch)> is_written) const;
 
+  const VertexCopies& joins() const {
+    static const VertexCopies none;
+    return joins_ ? *joins_ : none;
+  }
   PlanOfSet of(const PatchSet::Impl& set) const {
-    return {set, plan_, weld_, joins_, tolerance_, options_.spare, options_.headroom};
+    return {set, plan_, weld_, joins(), tolerance_, options_.spare, options_.headroom};
   }
   /// Checks an update; after an error the set's values and the views are as they were.
   Status start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
@@ -87,7 +92,7 @@ class ProvenMesh final : public Tessellation::Impl {
   CertifiedPlan plan_;
   std::vector<PatchShape> shapes_;  ///< shapes before welding
   VertexCopies weld_;               ///< vertices with a common position
-  VertexCopies joins_;              ///< vertices with a common normal, or stored once
+  std::unique_ptr<VertexCopies> joins_;  ///< vertices with a common normal, or stored once; null if there are none
   std::size_t welded_borders_;
   Vec3 origin_;
   std::uint64_t revision_;  ///< the set's, of which the plan is proven
@@ -96,6 +101,7 @@ class ProvenMesh final : public Tessellation::Impl {
   std::shared_ptr<const MeshTables> tables_;
   /// Made by the first update.
   std::unique_ptr<PlanUpdate> update_;
+  bool is_view_new_ = false;  ///< whether the view of options_ is not the one that the plan is proven for
   std::unique_ptr<TouchedBlocks> edits_;
 };
 

@@ -33,6 +33,10 @@ Status Tessellation::Impl::check_set(const PatchSet& set) const {
   return {StatusCode::stale, "the plan was made for another set: make a new plan for this one"};
 }
 
+Status Tessellation::Impl::set_view(const View&) {
+  return {StatusCode::invalid_argument, "the plan has no tolerance in pixels that a view could be for"};
+}
+
 Result<Tessellation> Tessellation::make(const PatchSet& set, const TessellationOptions& options,
                                         const Execution& execution) {
   return guarded([&]() -> Result<Tessellation> {
@@ -65,6 +69,14 @@ std::size_t Tessellation::patches_without_angle() const {
 std::span<const float> Tessellation::angles() const { return impl_->proof().angles; }
 double Tessellation::gap() const { return impl_->proof().gap; }
 std::span<const float> Tessellation::edge_gaps() const { return impl_->proof().edge_gaps; }
+double Tessellation::seen_bound() const {
+  const Impl::Proof proof = impl_->proof();
+  if (proof.pixels.empty()) return bound();
+  float most = 0;
+  for (std::size_t k = 0; k < proof.pixels.size(); ++k)
+    if (proof.pixels[k] > 0 && !std::isinf(proof.bounds[k])) most = std::max(most, proof.bounds[k]);
+  return double(most);
+}
 double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
 std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }
@@ -83,6 +95,10 @@ Status Tessellation::run(const PatchSet& set, const MeshViews& out, const Execut
     const Status status = impl_->check_set(set);
     return status.ok() ? impl_->run(set, out, execution) : status;
   });
+}
+
+Status Tessellation::set_view(const View& view) {
+  return guarded([&] { return impl_->set_view(view); });
 }
 
 Result<MeshChange> Tessellation::Impl::update_surfaces(PatchSet& set, std::span<const SurfaceEdits> edits,

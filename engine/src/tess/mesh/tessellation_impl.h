@@ -38,6 +38,8 @@ class Tessellation::Impl {
   virtual MeshCapacity before(std::size_t patch) const = 0;
   virtual Mesh allocate() const = 0;
   virtual Status run(const PatchSet& set, const MeshViews& out, const Execution& execution) const = 0;
+  /// Takes the view that the next update plans for. Errors: invalid_argument.
+  virtual Status set_view(const View& view);
   virtual Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                     const Execution& execution) = 0;
   Result<MeshChange> update_surfaces(PatchSet& set, std::span<const SurfaceEdits> edits, const MeshViews& out,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "base/impl_access.h"
 #include "base/text.h"
@@ -43,6 +44,51 @@ Status check_joining(const Joining& joining, const PatchSet& set) {
   return {};
 }
 
+/// The largest and the smallest distance that options ask for; none if they ask for none.
+struct Distances {
+  std::optional<double> largest = {}, smallest = {};
+
+  explicit Distances(const TessellationOptions& options) : largest(options.tolerance), smallest(options.tolerance) {
+    const std::vector<double>& of_surfaces = options.surface_tolerances;
+    if (of_surfaces.empty()) return;
+    const auto [least, most] = std::ranges::minmax(of_surfaces);
+    largest = most, smallest = least;
+  }
+};
+
+/// Checks the tolerances of surfaces.
+Status check_surface_tolerances(const TessellationOptions& options, const PatchSet& set) {
+  const std::vector<double>& tolerances = options.surface_tolerances;
+  if (tolerances.empty()) return {};
+  if (options.tolerance || options.budget)
+    return {StatusCode::invalid_argument,
+            std::string("there are both surface tolerances and ") + (options.tolerance ? "a tolerance" : "a budget") +
+                " for all surfaces: set one of them"};
+  if (tolerances.size() != set.surface_count())
+    return {StatusCode::count_mismatch, "the set has " + counted(set.surface_count(), "surface") + ", found " +
+                                            counted(tolerances.size(), "surface tolerance")};
+  for (std::size_t k = 0; k < tolerances.size(); ++k)
+    if (!(tolerances[k] > 0 && std::isfinite(tolerances[k])))
+      return {StatusCode::invalid_argument,
+              "the tolerance of surface " + std::to_string(k) + " is " + text(tolerances[k]) +
+                  ", it must be finite and above 0",
+              static_cast<std::ptrdiff_t>(k)};
+  return {};
+}
+
+/// Sets the shares of the largest tolerance that patches keep.
+void set_shares(const TessellationOptions& options, const PatchSet& set, PlannerOptions& planner) {
+  const Distances distances(options);
+  if (options.surface_tolerances.empty() || *distances.smallest == *distances.largest) return;
+  constexpr double down = 1 - 0x1p-52;  // a share of the largest is then no more than the tolerance
+  const auto share = [&](double tolerance) {
+    return tolerance < *distances.largest ? down * (tolerance / *distances.largest) : 1;
+  };
+  for (std::size_t patch = 0; patch < set.patch_count(); ++patch)
+    planner.shares.push_back(share(options.surface_tolerances[set.source(patch).surface]));
+  planner.least_share = share(*distances.smallest);
+}
+
 /// Checks how segments follow edits.
 Status check_edits(const TessellationOptions& options) {
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
@@ -58,7 +104,9 @@ Status check_edits(const TessellationOptions& options) {
 Result<PlannerOptions> planner_options(const TessellationOptions& options, const PatchSet& set) {
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
   // The conditions are written so that NaN fails.
-  if (!options.tolerance && !options.angle && !options.pixels && !options.budget)
+  if (Status status = check_surface_tolerances(options, set); !status.ok()) return status;
+  const std::optional<double> smallest = Distances(options).smallest;
+  if (!smallest && !options.angle && !options.pixels && !options.budget)
     return bad("there are neither rates nor a tolerance: set rates, a distance, an angle, pixels or a budget");
   if (options.tolerance && options.budget)
     return bad("there are both a tolerance and a budget, which finds the tolerance: set one of them");
@@ -80,12 +128,13 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   planner.max_gap = options.joining.max_gap.value_or(std::numeric_limits<double>::infinity());
   if (options.joining.weld) {
     planner.weld.reach = *options.joining.weld;
-  } else if (options.tolerance && !options.relative) {
-    planner.weld = {at_most_max_weld(*options.tolerance / 8, set), true};
+  } else if (smallest && !options.relative) {
+    planner.weld = {at_most_max_weld(*smallest / 8, set), true};
   } else {
     const double size = set.model_box().diagonal();
-    planner.weld = {options.tolerance ? std::min(*options.tolerance * size / 8, max_weld * size) : 1e-6 * size, true};
+    planner.weld = {smallest ? std::min(*smallest * size / 8, max_weld * size) : 1e-6 * size, true};
   }
+  set_shares(options, set, planner);
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
@@ -101,9 +150,10 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
 }
 
 Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set) {
-  double tolerance = std::numeric_limits<double>::infinity();
-  if (options.tolerance) tolerance = *options.tolerance * (options.relative ? set.model_box().diagonal() : 1);
-  if (tolerance > 0 || !(options.tolerance > 0.0)) return tolerance;  // planner_options() tells of others
+  const std::optional<double> largest = Distances(options).largest;
+  const double tolerance = largest ? *largest * (options.relative ? set.model_box().diagonal() : 1)
+                                   : std::numeric_limits<double>::infinity();
+  if (tolerance > 0 || !(largest > 0.0)) return tolerance;  // planner_options() tells of others
   return Status(StatusCode::invalid_argument, "the tolerance is " + text(tolerance) + ": the model has no size");
 }
 

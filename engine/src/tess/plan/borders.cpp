@@ -54,7 +54,18 @@ void Borders::find_in_step(const PatchSet::Impl& set, const EdgeRuns& runs) {
   }
 }
 
+bool Borders::follow(const PatchNeeds& needs) {
+  const std::uint64_t revision = needs.set().revision;
+  if (known_ && known_->revision == revision) return known_->hold;
+  known_.reset();
+  Directions known{.revision = revision, .hold = directions(needs).hold(), .against = {}};
+  if (known.hold) known.against = against(needs);
+  known_ = std::move(known);
+  return known_->hold;
+}
+
 std::vector<std::uint8_t> Borders::against(const PatchNeeds& needs) const {
+  if (known_ && known_->revision == needs.set().revision) return known_->against;
   const EdgeDirections directions = this->directions(needs);
   std::vector<std::uint8_t> against(4 * needs.shapes().size(), 0);
   for (std::uint32_t border = 0; border < against.size(); ++border)

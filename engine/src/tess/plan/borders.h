@@ -2,6 +2,7 @@
 // The facts that neighbouring patches share along their borders, whatever the tolerance is.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,10 @@ class Borders {
   EdgeDirections directions(const PatchNeeds& needs) const {
     return {needs.set(), edges_, weld_, shapes(needs), needs.shapes()};
   }
-  /// Returns for each border whether it runs against the leading border of its edge. Requires directions().hold().
+  /// Finds the directions at the set's present revision, for against(). Returns whether each edge is one still: edits
+  /// may have moved its borders apart.
+  bool follow(const PatchNeeds& needs);
+  /// Returns for each border whether it runs against the leading border of its edge. Requires that each edge is one.
   std::vector<std::uint8_t> against(const PatchNeeds& needs) const;
 
  private:
@@ -44,6 +48,13 @@ class Borders {
   Weld weld_;
   std::vector<PatchShape> drawn_;  ///< `[patch]`: cut ones are curves; empty if no patch is cut
   std::vector<std::vector<std::uint32_t>> in_step_;
+  /// Made by follow().
+  struct Directions {
+    std::uint64_t revision = 0;
+    bool hold = false;
+    std::vector<std::uint8_t> against;
+  };
+  std::optional<Directions> known_;
 };
 
 }}  // namespace tessera::abi_0_1

@@ -67,16 +67,17 @@ Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPa
       if (Status status = cutter->cut(); !status.ok()) return status;
     const std::vector<std::uint8_t> is_joined = joined_borders(facts.borders.edges(), patches);
     const auto chord = [&](std::uint32_t patch) { return facts.needs.chord(patch); };
-    Result<ClosedEdges> closed = close_edges({.set = set,
-                                              .runs = *facts.faces.runs,
-                                              .divisions = patches.divisions,
-                                              .cuts = rare.cuts,
-                                              .stations = cutter ? cutter->stations() : nullptr,
-                                              .is_joined = is_joined,
-                                              .chord = chord,
-                                              .max_gap = facts.needs.options().max_gap,
-                                              .same_share = same_share(set, request.tolerance),
-                                              .cancel = execution.cancel});
+    Result<ClosedEdges> closed =
+        close_edges({.set = set,
+                     .runs = *facts.faces.runs,
+                     .divisions = patches.divisions,
+                     .cuts = rare.cuts,
+                     .stations = cutter ? cutter->stations() : nullptr,
+                     .is_joined = is_joined,
+                     .chord = chord,
+                     .max_gap = facts.needs.options().max_gap,
+                     .same_share = same_share(set, facts.needs.options().least_share * request.tolerance),
+                     .cancel = execution.cancel});
     if (!closed) return closed.status();
     rare.closed = *std::move(closed);
     patches.open_edges = static_cast<std::uint32_t>(

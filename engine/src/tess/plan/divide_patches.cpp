@@ -124,12 +124,12 @@ class BorderSegments {
 /// there. The borders are made even together: a refusal must not depend on an earlier one. Each raises rates, which
 /// lowers the distances of those that were accepted.
 template <class ForOddBorders>
-std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& borders, double tolerance,
-                                                             const ForOddBorders& for_odd_borders) {
+std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& borders, const PatchNeeds& needs,
+                                                             double tolerance, const ForOddBorders& for_odd_borders) {
   std::vector<std::pair<std::size_t, Side>> refused;
   std::vector<std::pair<std::size_t, float>> accepted;
   const auto judge = [&](std::size_t k, Side side, double distance) {
-    if (!(distance <= tolerance)) {
+    if (!(distance <= needs.tolerance_of(k, tolerance))) {
       refused.emplace_back(k, side);
     } else {
       accepted.emplace_back(k, rounded_up(distance));
@@ -215,7 +215,7 @@ void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& pa
       }
     }
   };
-  for (const auto& [k, distance] : make_refused_even(borders, tolerance, for_odd_borders))
+  for (const auto& [k, distance] : make_refused_even(borders, facts.needs, tolerance, for_odd_borders))
     patches.bounds[k] = std::max(patches.bounds[k], distance);
   patches.divisions.reserve(segments.size());
   for (std::size_t k = 0; k < segments.size(); ++k)

@@ -74,7 +74,7 @@ FaceCutter::Room FaceCutter::room_of(const CutPatch& cut, double share) const {
     const double moved = distance_bound(own, taken, same.reversed) + roundings[same.border / 4];
     room.given = std::max(room.given, moved + needs.fit_error());
   }
-  room.tolerance = share * request_.tolerance;
+  room.tolerance = share * needs.tolerance_of(patch, request_.tolerance);
   double sliver = std::numeric_limits<double>::infinity();
   if (options.camera) {
     const ScreenSpaceBound& picture = needs.pictures()[patch];
@@ -193,7 +193,8 @@ Status FaceCutter::find_stations(std::vector<std::uint8_t>& is_changed) {
     return of_cuts[static_cast<std::size_t>(find_cut(cuts, patch) - cuts.data())];
   };
   std::optional<EdgeStations> before = std::exchange(stations_, std::nullopt);
-  EdgeStations& now = stations_.emplace(runs, same_share(set_, request_.tolerance));
+  EdgeStations& now =
+      stations_.emplace(runs, same_share(set_, facts_.needs.options().least_share * request_.tolerance));
   const auto find = [&](std::size_t begin, std::size_t end) {
     EdgeStations::Workspace workspace;
     for (std::size_t edge = begin; edge < end; ++edge)
@@ -248,7 +249,8 @@ Status FaceCutter::cut_once() {
   if (Status status = parallel_for(cuts.size(), cuts_per_task, quiet_, cut_some); !status.ok()) return status;
   for (std::size_t c = 0; c < cuts.size(); ++c) {
     if (cuts[c].has_too_many) return too_many_of_patch(facts_.needs.options(), request_, cuts[c].patch);
-    if (!(cuts[c].sliver < request_.tolerance)) shares_.settle(c);  // smaller cells leave the slivers as they are
+    const double tolerance = facts_.needs.tolerance_of(cuts[c].patch, request_.tolerance);
+    if (!(cuts[c].sliver < tolerance)) shares_.settle(c);  // smaller cells leave the slivers as they are
     shares_.take(c, excess_[c]);
   }
   return check_triangles();

@@ -127,6 +127,15 @@ std::optional<Rates> rates_for(const CellLimits& limits, int most) {
   return distance_alone ? limits.chord->cheapest(limits.distance, most) : cheapest(limits, most);
 }
 
+/// Returns the rates of uniform segments, of at least min_rate.
+std::optional<Rates> uniform_rates(const CellLimits& limits, int min_rate, int most) {
+  std::optional<Rates> rates = rates_for(limits, most);
+  if (!rates || min_rate == 1) return rates;
+  rates = {std::max(rates->u, min_rate), std::max(rates->v, min_rate)};
+  // Raised rates may have become odd: bounds of halves may not hold for the whole.
+  return most > max_rate || limits.keeps(*rates) ? *rates : Rates{rates->u + rates->u % 2, rates->v + rates->v % 2};
+}
+
 CellLimits part_of(CellLimits limits, double part) {
   limits.distance *= part;
   limits.pixels *= part;
@@ -135,8 +144,15 @@ CellLimits part_of(CellLimits limits, double part) {
 }
 
 /// Whether the kept segments of a patch are few enough compared with the best.
-bool keeps_segments(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
+bool are_few(const KeptSegments& kept, std::size_t patch, PatchSegments best) {
   return !kept.segments.empty() && kept.segments[patch].cells() <= (1 + kept.spare) * best.cells();
+}
+
+/// Whether segments of at least a rate keep all limits but that of the distance.
+bool keeps_besides_chord(CellLimits limits, PatchSegments segments, int min_rate) {
+  limits.chord = nullptr;
+  const Rates least = segments.coarsest();
+  return std::min(least.u, least.v) >= min_rate && limits.keeps(segments);
 }
 
 /// The distance that a patch keeps by bounds of small pieces; infinite unless PlannerOptions::fewest.
@@ -144,21 +160,51 @@ double local_distance_of(const PatchNeeds& needs, std::size_t patch, PatchSegmen
   return needs.options().fewest ? local_distance(needs.set().patches[patch], segments) : infinity;
 }
 
+/// Returns the distance that segments keep besides the rounding of vertices; see ChordBound::distance_of().
+double distance_of(const PatchNeeds& needs, std::size_t patch, PatchSegments segments, bool anywhere) {
+  const PatchSet::Slot slot = needs.set().slots[patch];
+  return anywhere ? needs.chord(patch).distance_of(segments, true)
+                  : needs.chords().distance_of(segments, slot.block, slot.lane, nullptr);
+}
+
+/// Returns the kept segments of a patch if they keep the limits.
+std::optional<ProvenSegments> kept_segments(const PatchNeeds& needs, std::size_t patch, const CellLimits& limits,
+                                            int min_rate, const KeptSegments& kept) {
+  const PatchSegments had = kept.segments[patch];
+  if (!keeps_besides_chord(limits, had, min_rate)) return {};
+  const bool anywhere = !limits.is_for_halves();
+  double keeps = distance_of(needs, patch, had, anywhere);
+  if (limits.chord && !(keeps <= limits.distance)) keeps = local_distance_of(needs, patch, had);
+  if (limits.chord && !(keeps <= limits.distance)) return {};
+  return ProvenSegments{had, keeps, anywhere};
+}
+
+/// Returns the kept segments of a patch if they keep the limits, and no others that keep the `aimed` ones have far
+/// fewer cells: the best ones need not be found then.
+std::optional<ProvenSegments> surely_kept(const PatchNeeds& needs, std::size_t patch, const CellLimits& limits,
+                                          const CellLimits& aimed, int min_rate, const PlanRequest& request) {
+  if (request.kept.segments.empty() || request.fewest) return {};
+  const auto kept = kept_segments(needs, patch, limits, min_rate, request.kept);
+  const bool is_sure = kept && !may_have_fewer(aimed, kept->segments.cells() / (1 + request.kept.spare));
+  return is_sure ? kept : std::nullopt;
+}
+
 }  // namespace
 
 NeededSegments PatchNeeds::segments_for(std::size_t patch, const PlanRequest& request, int most) const {
-  const double tolerance = request.slack * request.tolerance, pixels = request.slack * options_.pixels;
+  const double tolerance = request.slack * tolerance_of(patch, request.tolerance),
+               pixels = request.slack * options_.pixels;
   const double given = this->given(patch);
   const ScreenSpaceBound* const picture = options_.camera ? &pictures_[patch] : nullptr;
   std::optional<NormalTurning> turning;
   if (options_.angle && !shapes_[patch].is_curve) turning = turnings_.empty() ? turning_of(patch) : turnings_[patch];
-  const ChordBound chord = this->chord(patch);
+  std::optional<ChordBound> chord;
   NeededSegments needed;
   CellLimits limits;
   const double distance = picture ? std::min(tolerance, request.slack * picture->distance()) : tolerance;
   if (!(given < distance))
     needed.failure = given < tolerance ? NeededSegments::Failure::rough_pixels : NeededSegments::Failure::rough;
-  if (std::isfinite(distance)) limits.chord = &chord;
+  if (std::isfinite(distance)) limits.chord = &chord.emplace(this->chord(patch));
   limits.distance = request.share * (distance - given);
   const std::optional<ChordBound> projected = picture ? picture->projected() : std::nullopt;
   if (projected) {
@@ -173,39 +219,31 @@ NeededSegments PatchNeeds::segments_for(std::size_t patch, const PlanRequest& re
     limits.angle = request.share * request.slack * *options_.angle;
   }
   const CellLimits aimed = part_of(limits, 1 - request.headroom);
-  std::optional<Rates> rates = rates_for(aimed, most);
+  const auto finish = [&](const ProvenSegments& proven) {
+    needed.segments = proven.segments;
+    needed.anywhere = proven.anywhere;
+    needed.bound = given + proven.distance;
+    if (turning) needed.angle = bounded && turning->is_certified ? turning->bound.angle(proven.segments) : infinity;
+    if (picture) needed.pixels = picture->pixels(projected, proven.segments, needed.bound);
+    return needed;
+  };
+  const int min_rate = turning && !bounded ? options_.angle_rate : 1;
+  if (const auto kept = surely_kept(*this, patch, limits, aimed, min_rate, request)) return finish(*kept);
+  const std::optional<Rates> rates = uniform_rates(aimed, min_rate, most);
   if (!rates) {
     needed.failure = NeededSegments::Failure::wide;
     return needed;
   }
-  if (turning && !bounded) rates = {std::max(rates->u, options_.angle_rate), std::max(rates->v, options_.angle_rate)};
   needed.cells = double(rates->u) * rates->v;
-  if (most > max_rate) return needed;
-  // Raised rates may have become odd: bounds of halves may not hold for the whole.
-  if (turning && !bounded && !aimed.keeps(*rates)) rates = {rates->u + rates->u % 2, rates->v + rates->v % 2};
-  const ProvenSegments proven =
-      settle(patch, aimed, limits, chord, turning && !bounded ? options_.angle_rate : 1, request, *rates);
-  needed.segments = proven.segments;
-  needed.anywhere = proven.anywhere;
-  needed.bound = given + proven.distance;
-  if (turning) needed.angle = bounded && turning->is_certified ? turning->bound.angle(proven.segments) : infinity;
-  if (picture) needed.pixels = picture->pixels(proven.segments, needed.bound);
-  return needed;
+  return most > max_rate ? needed : finish(settle(patch, aimed, limits, min_rate, request, *rates));
 }
 
 ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits,
-                                  const ChordBound& chord, int min_rate, const PlanRequest& request,
-                                  Rates rates) const {
-  const KeptSegments& kept = request.kept;
-  const auto keep_others = [&](CellLimits others, PatchSegments segments) {
-    others.chord = nullptr;
-    const Rates least = segments.coarsest();
-    return std::min(least.u, least.v) >= min_rate && others.keeps(segments);
-  };
-  const auto keeps_others = [&](PatchSegments segments) { return keep_others(limits, segments); };
+                                  int min_rate, const PlanRequest& request, Rates rates) const {
+  const auto keeps_others = [&](PatchSegments segments) { return keeps_besides_chord(limits, segments, min_rate); };
   const bool anywhere = !limits.is_for_halves();
   const auto proven_for = [&](PatchSegments segments) {
-    return ProvenSegments{segments, chord.distance_of(segments, anywhere), anywhere};
+    return ProvenSegments{segments, distance_of(*this, patch, segments, anywhere), anywhere};
   };
   const auto graded = min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform
                           ? graded_segments(limits, rates)
@@ -217,17 +255,13 @@ ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, c
     if (choices.fewest().segments.cells() < proven.segments.cells()) proven = choices.fewest();
     proven.anywhere = false;
   }
-  if (!keeps_segments(kept, patch, proven.segments) || !keep_others(kept_limits, kept.segments[patch])) return proven;
-  const PatchSegments had = kept.segments[patch];
-  double keeps = chord.distance_of(had, anywhere);
-  if (limits.chord && !(keeps <= kept_limits.distance)) keeps = local_distance_of(*this, patch, had);
-  if (limits.chord && !(keeps <= kept_limits.distance)) return proven;
-  return {had, keeps, anywhere};
+  if (!are_few(request.kept, patch, proven.segments)) return proven;
+  return kept_segments(*this, patch, kept_limits, min_rate, request.kept).value_or(proven);
 }
 
 ProvenSegments keep_by_distance(const PatchNeeds& needs, std::size_t patch, double distance, const KeptSegments& kept,
                                 const ChordBlocks::Products* products, const ProvenSegments& best) {
-  if (!keeps_segments(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
+  if (!are_few(kept, patch, best.segments) || kept.segments[patch] == best.segments) return best;
   const PatchSet::Slot slot = needs.set().slots[patch];
   const PatchSegments had = kept.segments[patch];
   double keeps = needs.chords().distance_of(had, slot.block, slot.lane, products);
@@ -247,7 +281,7 @@ NeededSegments segments_beyond(const PatchNeeds& needs, std::size_t patch, const
   constexpr int most = 64;  // the last limits are infinite, so it ends
   for (int k = 1;; ++k) {
     relaxed.slack = k < most ? std::ldexp(1.0, k) : infinity;
-    if (k < most && !(relaxed.slack * request.tolerance > given)) continue;
+    if (k < most && !(relaxed.slack * needs.tolerance_of(patch, request.tolerance) > given)) continue;
     const NeededSegments needed = needs.segments_for(patch, relaxed, is_cut ? max_rate_of_cut : max_rate);
     if (needed.are_found() || k == most) return needed;
   }
@@ -272,8 +306,7 @@ void add_givers_of_cut(const PatchSet::Impl& set, const SharedEdges& shared, std
 
 std::vector<std::uint8_t> patches_that_need_f64(const PatchNeeds& needs, const SharedEdges& edges, double tolerance) {
   const PatchSet::Impl& set = needs.set();
-  const double most = max_rounding * tolerance;
-  const bool is_any_rough = needs.largest_rounding() > most;
+  const bool is_any_rough = needs.largest_rounding() > max_rounding * needs.options().least_share * tolerance;
   const std::span<const ScreenSpaceBound> pictures = needs.pictures();
   if (!is_any_rough && pictures.empty()) return {};
   const auto is_rough_in_picture = [&](std::size_t k) {
@@ -284,7 +317,8 @@ std::vector<std::uint8_t> patches_that_need_f64(const PatchNeeds& needs, const S
   std::vector<std::uint8_t> patches(needs.shapes().size(), 0);
   for (std::size_t k = 0; k < patches.size(); ++k) {
     const PatchSet::Slot slot = set.slots[k];
-    patches[k] = (is_any_rough && needs.own_rounding(set.group_of_block(slot.block), slot) > most) ||
+    patches[k] = (is_any_rough && needs.own_rounding(set.group_of_block(slot.block), slot) >
+                                      max_rounding * needs.tolerance_of(k, tolerance)) ||
                  (!pictures.empty() && is_rough_in_picture(k));
   }
   if (std::ranges::find(patches, 1) == patches.end()) return {};
@@ -293,8 +327,9 @@ std::vector<std::uint8_t> patches_that_need_f64(const PatchNeeds& needs, const S
 }
 
 bool is_rough(const PatchNeeds& needs, double tolerance) {
-  return std::ranges::any_of(needs.roundings(),
-                             [&](double rounding) { return !(2 * (rounding + needs.fit_error()) < tolerance); });
+  for (std::size_t k = 0; k < needs.roundings().size(); ++k)
+    if (!(2 * needs.given(k) < needs.tolerance_of(k, tolerance))) return true;
+  return false;
 }
 
 }}  // namespace tessera::abi_0_1

@@ -58,6 +58,8 @@ class PatchNeeds {
   /// Bounds what the camera sees of the patches of one block; needs their roundings.
   void bound_pictures(std::size_t block);
 
+  /// Takes another camera. The blocks' pictures are then to be bounded anew.
+  void look(const Camera& camera) { options_.camera = camera; }
   /// Takes an edited set in the place of the one before, of the same patches.
   void follow(const PatchSet::Impl& set);
   /// Finds the bounds of an edited block anew, at least of the lanes whose bits are set.
@@ -70,6 +72,10 @@ class PatchNeeds {
   std::span<const double> roundings() const { return roundings_; }
   double largest_rounding() const { return largest_rounding_; }  ///< of vertices before welding
   double fit_error() const { return fit_error_; }
+  /// Returns the distance that a patch keeps, where `largest` is that of patches with a share of 1.
+  double tolerance_of(std::size_t patch, double largest) const {
+    return options_.shares.empty() ? largest : options_.shares[patch] * largest;
+  }
   /// The distance from the surface that the vertices of a patch and its fit take.
   double given(std::size_t patch) const { return roundings_[patch] + fit_error_; }
   const ChordBlocks& chords() const { return chords_; }
@@ -93,8 +99,8 @@ class PatchNeeds {
 
  private:
   /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones that keep theirs.
-  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits,
-                        const ChordBound& chord, int min_rate, const PlanRequest& request, Rates rates) const;
+  ProvenSegments settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits, int min_rate,
+                        const PlanRequest& request, Rates rates) const;
 
   const PatchSet::Impl* set_;
   PlannerOptions options_;

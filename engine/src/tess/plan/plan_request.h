@@ -18,6 +18,8 @@ struct PlannerOptions {
   WeldRules weld = {};
   /// `[patch]`: 1 if its vertices come from double control points; empty if no patch's do.
   std::vector<std::uint8_t> f64_patches = {};
+  std::vector<double> shares = {};  ///< `[patch]`: the share of the distance that it keeps, at most 1; empty: all of it
+  double least_share = 1;
   bool f64_positions = false;   ///< the mesh has positions in double; needs all f64_patches
   std::optional<double> angle;  ///< radians, above 0, at most pi / 2
   int angle_rate = 64;          ///< the least rate where the angle has no bound

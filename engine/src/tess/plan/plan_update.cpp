@@ -37,16 +37,28 @@ PlanUpdate::PlanUpdate(PlanFacts facts, const PlanOfSet& of)
 void PlanUpdate::begin() {
   touched_.clear();
   copied_.clear();
+  is_view_new_ = false;
+}
+
+void PlanUpdate::begin(const Camera& view) {
+  begin();
+  is_view_new_ = true;
+  facts_.needs.look(view);
 }
 
 void PlanUpdate::touch(const PatchSet::Impl& set, std::size_t patch) { touched_.add(set.slots[patch]); }
 
 template <class Visit>
-void PlanUpdate::for_proven(const PatchSet::Impl& set, Visit visit) const {
-  const Lanes& proven = has_copies() ? copied_ : touched_;
-  for (const std::uint32_t block : proven.blocks)
-    for (std::uint32_t left = proven.bits[block]; left != 0; left &= left - 1)
+void PlanUpdate::for_lanes(const PatchSet::Impl& set, const Lanes& lanes, Visit visit) {
+  for (const std::uint32_t block : lanes.blocks)
+    for (std::uint32_t left = lanes.bits[block]; left != 0; left &= left - 1)
       visit(set.lane_patches[block * std::size_t{PatchSet::lanes} + static_cast<std::size_t>(std::countr_zero(left))]);
+}
+
+template <class Visit>
+void PlanUpdate::for_proven(const PatchSet::Impl& set, Visit visit) const {
+  if (!is_view_new_) return for_lanes(set, has_copies() ? copied_ : touched_, visit);
+  for (std::size_t patch = 0; patch < proven_.size(); ++patch) visit(patch);
 }
 
 Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<void(std::uint32_t block)> pack,
@@ -58,19 +70,22 @@ Result<PlanUpdate::Outcome> PlanUpdate::prove(const PlanOfSet& of, FunctionRef<v
     for (const std::uint32_t block : std::span(touched_.blocks).subspan(begin, end - begin)) {
       pack(block);
       bound_block(of, block);
-      if (!has_copies()) choose(of, block, touched_.bits[block]);
+      if (!has_copies() && !is_view_new_) choose(of, block, touched_.bits[block]);
     }
   };
   if (Status status = parallel_for(touched_.blocks.size(), blocks_per_task, execution, bound); !status.ok())
     return status;
-  if (has_copies() && !is_unknown_) {
-    measure_copies(of);
+  if (has_copies() && !is_unknown_) measure_copies(of);
+  if ((has_copies() || is_view_new_) && !is_unknown_) {
     const auto choose_some = [&](std::size_t begin, std::size_t end) {
-      for (const std::uint32_t block : std::span(copied_.blocks).subspan(begin, end - begin))
-        choose(of, block, copied_.bits[block]);
+      for (std::size_t k = begin; k < end; ++k)
+        if (is_view_new_)
+          choose(of, static_cast<std::uint32_t>(k), ~0u);
+        else
+          choose(of, copied_.blocks[k], copied_.bits[copied_.blocks[k]]);
     };
-    if (Status status = parallel_for(copied_.blocks.size(), blocks_per_task, execution, choose_some); !status.ok())
-      return status;
+    const std::size_t count = is_view_new_ ? of.set.lane_counts.size() : copied_.blocks.size();
+    if (Status status = parallel_for(count, blocks_per_task, execution, choose_some); !status.ok()) return status;
   }
   return is_unknown_ ? Outcome::unknown : is_redivided_ ? Outcome::redivided : Outcome::kept;
 }
@@ -82,7 +97,6 @@ bool PlanUpdate::moves_line_patches(const PlanOfSet& of) const {
 }
 
 void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
-  const double most = max_rounding * of.tolerance;  // beyond it other patches need doubles
   const BlockGroup& group = of.set.group_of_block(block);
   PatchNeeds& needs = facts_.needs;
   needs.bound_chords(block, touched_.bits[block]);
@@ -98,7 +112,9 @@ void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
     const SideMask collapsed = of.set.collapsed[patch];
     const bool keeps_shape = collapsed.any() ? PatchShape::of(of.set.patches[patch], collapsed) == shape
                                              : !shape.collapsed.any() && !shape.is_curve;
-    if (!keeps_shape || !(rounding <= most || needs.is_f64(patch))) is_unknown_ = true;
+    // Beyond a share of the tolerance other patches need doubles.
+    const bool is_fine = rounding <= max_rounding * needs.tolerance_of(patch, of.tolerance) || needs.is_f64(patch);
+    if (!keeps_shape || !is_fine) is_unknown_ = true;
   }
 }
 
@@ -118,13 +134,13 @@ void PlanUpdate::measure_copies(const PlanOfSet& of) {
   };
   look_at_all(of.weld);
   if (of.plan.shares_vertices()) look_at_all(of.joins);
-  for_proven(of.set, [&](std::size_t patch) { displacements_[patch] = 0; });
+  for_lanes(of.set, copied_, [&](std::size_t patch) { displacements_[patch] = 0; });
   const auto is_copied = [&](std::size_t patch) { return copied_.has(of.set.slots[patch]); };
   measure_displacements(of.set, of.weld, own_roundings_, is_copied, displacements_);
   // Where borders have moved apart, shared vertices follow the patch that owns them and lie beside the other's border.
   if (of.plan.shares_vertices())
     measure_displacements(of.set, of.joins, own_roundings_, is_copied, displacements_, true);
-  for_proven(of.set, [&](std::size_t patch) {
+  for_lanes(of.set, copied_, [&](std::size_t patch) {
     facts_.needs.set_rounding(patch, std::max(own_roundings_[patch], displacements_[patch]));
   });
 }
@@ -156,7 +172,8 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
   const KeptSegments kept{of.plan.patches().segments, of.spare};
   ChordBlocks::Lanes<double> left;
   left.fill(of.tolerance);
-  for (std::size_t lane = 0; lane < count; ++lane) left[lane] = of.tolerance - needs.given(patches[lane]);
+  for (std::size_t lane = 0; lane < count; ++lane)
+    left[lane] = needs.tolerance_of(patches[lane], of.tolerance) - needs.given(patches[lane]);
   ChordBlocks::Lanes<double> aimed = left;
   for (double& lane : aimed) lane *= 1 - of.headroom;
   ChordBlocks::Products products;
@@ -175,8 +192,8 @@ void PlanUpdate::choose_by_distance(const PlanOfSet& of, std::uint32_t block, st
     const bool is_kept = proven.segments == of.plan.patches().segments[patch];
     const double crossing = proven.anywhere || !is_kept ? 0 : crossing_distance(of, patch);
     if (!(crossing <= left[lane])) is_redivided_ = true;
-    const double given = of.tolerance - left[lane];
-    set(of, patch, {proven.segments, proven.anywhere, rounded_up(std::max(proven.distance, crossing) + given)});
+    const double bound = std::max(proven.distance, crossing) + needs.given(patch);
+    set(of, patch, {proven.segments, proven.anywhere, rounded_up(bound)});
   }
   // The fewest segments are chosen for all patches together.
   if (needs.options().fewest && is_redivided_) is_unknown_ = true;

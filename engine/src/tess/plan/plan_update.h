@@ -30,9 +30,13 @@ class PlanUpdate {
   PlanUpdate(PlanFacts facts, const PlanOfSet& of);
 
   const PlanFacts& facts() const { return facts_; }
+  /// Whether the borders of each edge are one still.
+  bool borders_hold() { return facts_.borders.follow(facts_.needs); }
 
   /// Forgets the patches of the last proof.
   void begin();
+  /// Begins with a new view, for which all patches are proven anew.
+  void begin(const Camera& view);
   /// Adds a patch that has new control points, or will have them when its block is packed.
   void touch(const PatchSet::Impl& set, std::size_t patch);
   std::span<const std::uint32_t> blocks() const { return touched_.blocks; }  ///< blocks with touched patches
@@ -43,8 +47,8 @@ class PlanUpdate {
     redivided,  ///< some patches need other segments
     unknown,    ///< only new facts can tell: shapes, the source of vertices or welds must change, or nothing suffices
   };
-  /// Proves the touched patches, and those that take vertices from them. `pack`: packs the new control points of a
-  /// block; called from any thread, once for each block of touched patches. Errors: cancelled.
+  /// Proves the touched patches and those that take vertices from them, or all for a new view. `pack`: packs the new
+  /// control points of a block; called from any thread, once for each block of touched patches. Errors: cancelled.
   Result<Outcome> prove(const PlanOfSet& of, FunctionRef<void(std::uint32_t block)> pack, const Execution& execution);
   /// After `kept`: sets the new bounds.
   void take_bounds(CertifiedPlan& plan) const;
@@ -80,6 +84,8 @@ class PlanUpdate {
   /// Returns the chord distance of triangles at borders of odd rates beside even ones; 0 if there are none.
   double crossing_distance(const PlanOfSet& of, std::size_t patch) const;
   template <class Visit>
+  static void for_lanes(const PatchSet::Impl& set, const Lanes& lanes, Visit visit);
+  template <class Visit>
   void for_proven(const PatchSet::Impl& set, Visit visit) const;
 
   PlanFacts facts_;
@@ -88,6 +94,7 @@ class PlanUpdate {
   std::vector<double> own_roundings_;  ///< `[patch]`: roundings of its vertices before welding; empty without copies
   std::vector<double> displacements_;  ///< `[patch]`: how far copies move its vertices; empty without copies
   std::vector<Proven> proven_;         ///< `[patch]`, of those that were proven last
+  bool is_view_new_ = false;           ///< whether all patches are proven
   std::atomic<bool> is_redivided_ = false, is_unknown_ = false;
 };
 

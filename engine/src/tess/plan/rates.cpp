@@ -49,7 +49,9 @@ class RatesByDistance {
   }
 
  private:
-  double left_of(std::size_t patch) const { return request_.tolerance - needs_.given(patch); }
+  double left_of(std::size_t patch) const {
+    return needs_.tolerance_of(patch, request_.tolerance) - needs_.given(patch);
+  }
 
   void choose_block(std::size_t block) {
     const std::uint32_t* patches = needs_.set().lane_patches.data() + block * PatchSet::lanes;

@@ -40,7 +40,7 @@ std::optional<double> nearest_tolerance(const PlanFacts& facts, std::uint64_t ma
   const PatchNeeds& needs = facts.needs;
   const std::size_t patches = needs.shapes().size();
   double given = 0;
-  for (std::size_t k = 0; k < patches; ++k) given = std::max(given, needs.given(k));
+  for (std::size_t k = 0; k < patches; ++k) given = std::max(given, needs.given(k) / needs.tolerance_of(k, 1));
   // `room` is left for the chords; rates go by its root.
   for (double room = given / 8; room < 1e12 * given; room *= 2) {
     const double tolerance = rounded_up_shortly(given + room);
@@ -72,12 +72,13 @@ Status refusal(const PlanFacts& facts, const PlanRequest& request, std::size_t p
       (is_displaced(facts.borders.weld(), patch) ? ", the displacement of welded " : ", the rounding of ") +
       (options.f64_positions ? "vertices in double of patch " : "float vertices of patch ") + std::to_string(patch) +
       ", plus " + text(needs.fit_error()) + ", the fit error";
-  const bool is_near = failure == Failure::wide && needs.given(patch) > tolerance / 2;
+  const bool is_near = failure == Failure::wide && needs.given(patch) > needs.tolerance_of(patch, tolerance) / 2;
   if (failure == Failure::rough || is_near) {
     const std::optional<double> nearest = nearest_tolerance(facts, request.max_triangles);
-    return invalid("the tolerance " + text(tolerance) +
+    const double share = needs.tolerance_of(patch, 1);
+    return invalid("the tolerance " + text(share * tolerance) +
                        (is_near ? " leaves too little room above " : " must be above ") + rounding +
-                       (nearest ? "; " + text(*nearest) + " is enough" : ""),
+                       (nearest ? "; " + text(share * *nearest) + " is enough" : ""),
                    patch);
   }
   if (failure == Failure::rough_pixels)
@@ -104,7 +105,8 @@ Status refusal(const PlanFacts& facts, const PlanRequest& request, std::size_t p
 std::string wanted(const PlannerOptions& options, double tolerance) {
   std::string said;
   const auto add = [&said](const std::string& more) { said += (said.empty() ? "" : " with ") + more; };
-  if (std::isfinite(tolerance)) add("the tolerance " + text(tolerance));
+  const std::string from = options.shares.empty() ? "" : text(options.least_share * tolerance) + " to ";
+  if (std::isfinite(tolerance)) add("the tolerance " + from + text(tolerance));
   if (options.angle) add("the angle " + text(*options.angle));
   if (options.camera) add("the tolerance of " + text(options.pixels) + " pixels");
   return said;
