@@ -2,13 +2,14 @@
 
 import argparse
 
-from . import baselines, check, compare, count, export, peers, record, records, report, roofline, track
+from . import baselines, check, compare, count, export, own_program, peers, record, records, report, roofline, track
 from .console import FAILED, GOOD, REGRESSION, SKIPPED, USAGE, Failure, say
 
 DESCRIPTION = """\
 Catches what makes Tessera slower, on machines that do other things as well.
 
   tools/perf compare main .                  is this tree slower than main? Builds both, runs them in turns
+  tools/perf compare v1 . --program my_bench  the same of a program that is not Tessera's
   tools/perf count --check                   does a counted case take more instructions?
   tools/perf record --roofline               this build's figures, kept in build/perf/records
   tools/perf track ./my_bench                the figures of a program that is not Tessera's, kept in perf-records
@@ -71,7 +72,15 @@ def add_compare(commands):
     parser.add_argument("--rebuild", action="store_true", help="rebuild kept builds")
     parser.add_argument("--json", metavar="FILE", help="the ratios as JSON too")
     add_build_options(parser)
-    parser.set_defaults(run=compare.command)
+    own = parser.add_argument_group(
+        "a program that is not Tessera's", "BASE and HEAD are then commits of the repository in the current folder, or "
+        "'.'. Each run has all cases; builds of commits stay in .git/perf-builds.")
+    own.add_argument("--program", dest="own", metavar="COMMAND",
+                     help="starts the program, from the root of the commit's folder: 'build/speed --json'")
+    own.add_argument("--build", metavar="COMMAND", help="builds it there, by the shell: 'cmake -B build && cmake "
+                     "--build build' (default: it is built already)")
+    own.add_argument("--time-limit", type=number(1, 86400), default=600, metavar="S", help="of a run (default: 600)")
+    parser.set_defaults(run=lambda arguments: (own_program if arguments.own else compare).command(arguments))
 
 
 def add_count(commands):

@@ -76,18 +76,12 @@ def text_of(verdicts, threshold):
     return table(rows, right=(1, 3))
 
 
-def command(arguments):
-    common = dict(preset=arguments.preset, jobs=arguments.jobs, rebuild=arguments.rebuild)
-    base = builds.build(arguments.base, options=arguments.base_option, **common)
-    head = builds.build(arguments.head, options=arguments.head_option, **common)
-    cases = cases_of(base, head, arguments.set, arguments.filter)
-    if machine.busy():
-        say(machine.busy() + "; cases take longer to tell apart")
+def conclude(base, head, verdicts, arguments):
+    """Prints the verdicts, writes them as JSON if wanted, and returns the exit status."""
     threshold = arguments.threshold / 100
-    verdicts = measure(base, head, cases, arguments.quads, arguments.seconds, threshold)
     slower = [case for case, verdict in verdicts.items() if verdict.is_slower(threshold)]
     print(f"base: {base.label}\nhead: {head.label}\n{text_of(verdicts, threshold)}")
-    print(f"{len(slower)} of {len(cases)} cases are slower by more than {arguments.threshold:g}%")
+    print(f"{len(slower)} of {len(verdicts)} cases are slower by more than {arguments.threshold:g}%")
     if arguments.json:
         content = {"base": base.label, "head": head.label, "threshold": threshold, "machine": machine.describe(),
                    "cases": {case: {"ratio": v.ratio, "low": v.low, "high": v.high, "quads": v.quads,
@@ -95,3 +89,14 @@ def command(arguments):
         with open(arguments.json, "w", encoding="utf-8") as file:
             json.dump(content, file, indent=1)
     return REGRESSION if slower else GOOD
+
+
+def command(arguments):
+    common = dict(preset=arguments.preset, jobs=arguments.jobs, rebuild=arguments.rebuild)
+    base = builds.build(arguments.base, options=arguments.base_option, **common)
+    head = builds.build(arguments.head, options=arguments.head_option, **common)
+    cases = cases_of(base, head, arguments.set, arguments.filter)
+    if machine.busy():
+        say(machine.busy() + "; cases take longer to tell apart")
+    verdicts = measure(base, head, cases, arguments.quads, arguments.seconds, arguments.threshold / 100)
+    return conclude(base, head, verdicts, arguments)
