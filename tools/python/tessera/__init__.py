@@ -21,11 +21,13 @@ from .errors import (
 )
 from .jets import Jets
 from .limits import Limits, Measurement, limits, measure
-from .meshes import Mesh, MeshReport, View
+from .meshes import Mesh, MeshReport
 from .models import Assembly, Instance, Model, PatchSet, Scene, Surface
 from .patches import Patch
+from .plans import View
 from .rays import HIT, INVALID_RAY, MISS, Hits
-from .sources import Spline, bezier, model, nurbs, parse, read
+from .sources import bezier, model, nurbs, parse, read
+from .splines import Spline
 
 _number = _functions.tsr_version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"

@@ -11,29 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, integer_of, out_view, pair_of, vectors_of
+from ._arrays import address_of, out_view
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
-from .errors import ArgumentError, ArgumentTypeError, StateError
+from .errors import ArgumentError, StateError
+from .plans import Plan, View, fill_view, is_double
 from .view import MAX_TRIANGLES, html_of
 
-_RELATIVE, _SHARE, _QUADS, _FEWEST, _SMALLEST, _DOUBLE, _APART = (1 << k for k in range(7))
-_UV = {"surface": 128, "unit": 256, "patch": 512}
-
-
-@dataclass(frozen=True)
-class View:
-    """A camera. ``field_of_view``: radians, across the shorter side of the picture; ``extent``: parallel rays instead,
-    and the length that the shorter side shows; ``near_distance``: a thousandth of the target's distance by default."""
-
-    eye: Any
-    target: Any
-    up: Any = (0.0, 0.0, 1.0)
-    field_of_view: float | None = None
-    extent: float | None = None
-    near_distance: float | None = None
-    width: int = 1280
-    height: int = 800
+_VIEWED = 5e-4  # of the size: less than a pixel of the view in notebooks
 
 
 @dataclass(frozen=True)
@@ -53,91 +38,8 @@ class MeshReport:
     non_finite_vertices: int
 
 
-class _Plan(Handle):
-    """How a set is divided into triangles."""
-
-    _kind = "plan"
-
-    def __init__(self, patches: Handle, wanted: dict[str, Any], progress: Progress | None) -> None:
-        options = struct("tsr_plan_options")
-        library.tsr_plan_defaults(ctypes.byref(options))
-        kept = _fill(options, wanted)
-        is_long = (wanted.get("rates") is None and patches._info().patches > _LONG) or wanted.get("fewest", False)
-        self._make(library.tsr_plan_new, patches._handle, ctypes.byref(options), progress=progress, is_long=is_long)
-        del kept  # the options point into it
-
-
-MAX_RATE, MAX_PIXELS = 4096, 1 << 20
-_VIEWED = 5e-4  # of the size: less than a pixel of the view in notebooks
-_LONG = 200  # patches, below which a plan is made at once
-
-
-def _fill(options: Any, wanted: dict[str, Any]) -> np.ndarray | None:
-    """Fills a tsr_plan_options. ``wanted``: options of PatchSet.tessellate(), and its defaults where one is missing.
-    Returns the memory of tolerances that the options point into."""
-    of_surfaces = None
-    if np.ndim(wanted.get("tolerance")) > 0:
-        of_surfaces = np.ascontiguousarray(array_of("tolerance", wanted["tolerance"])).ravel()
-        options.surface_tolerances, options.surface_tolerance_count = address_of(of_surfaces), len(of_surfaces)
-        wanted = {**wanted, "tolerance": None}
-    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap", "headroom")
-    for name in limits:
-        if wanted.get(name) is not None:
-            try:
-                setattr(options, name, wanted[name])
-            except TypeError:
-                raise ArgumentTypeError(f"{name}: expected a number, found {wanted[name]!r}") from None
-    if wanted.get("max_triangles") is not None:
-        options.max_triangles = integer_of("max_triangles", wanted["max_triangles"], 1, 2**64 - 1)
-    if wanted.get("rates") is not None:
-        options.rate_u, options.rate_v = pair_of("rates", wanted["rates"], 1, MAX_RATE)
-    is_limited = of_surfaces is not None or any(
-        wanted.get(name) is not None for name in ("tolerance", "angle", "pixels", "rates")
-    )
-    flags = {
-        _RELATIVE: wanted.get("relative"),
-        _SHARE: wanted.get("share_vertices"),
-        _QUADS: wanted.get("quads"),
-        _FEWEST: wanted.get("fewest"),
-        _SMALLEST: wanted.get("max_triangles") is not None and not is_limited,
-        _DOUBLE: _is_double(wanted),
-        _APART: not wanted.get("close_edges", True),
-    }
-    if (uv := wanted.get("uv")) is not None:
-        if uv not in _UV:
-            raise ArgumentError(f"uv: expected one of {', '.join(map(repr, _UV))}, found {uv!r}")
-        flags[_UV[uv]] = True
-    options.flags = sum(flag for flag, is_set in flags.items() if is_set)
-    view = wanted.get("view")
-    if wanted.get("pixels") is not None and view is None:
-        raise ArgumentError("pixels: expected a view beside it: view=View(eye=..., target=...)")
-    if view is not None:
-        _fill_view(options, view)
-    return of_surfaces
-
-
-def _fill_view(options: Any, view: View) -> None:
-    for name in ("eye", "target", "up"):
-        vector = vectors_of(f"view.{name}", getattr(view, name))
-        if vector.shape != (3,):
-            raise ArgumentError(f"view.{name}: expected shape (3,), found {vector.shape}")
-        getattr(options, name)[:] = vector.tolist()
-    for name in ("field_of_view", "extent", "near_distance"):
-        if getattr(view, name) is not None:
-            setattr(options, name, getattr(view, name))
-    for name in ("width", "height"):
-        setattr(options, name, integer_of(f"view.{name}", getattr(view, name), 1, MAX_PIXELS))
-
-
-def _is_double(wanted: dict[str, Any]) -> bool:
-    dtype = np.dtype(wanted.get("dtype", np.float32))
-    if dtype not in (np.float32, np.float64):
-        raise ArgumentTypeError(f"dtype: expected float32 or float64, found {dtype}")
-    return dtype == np.float64
-
-
 class Mesh:
-    """A mesh, made by PatchSet.tessellate(). Its arrays are views of memory that it may write again.
+    """A mesh, made by PatchSet.tessellate(); Mesh() is empty. Its arrays are views of memory that it may write again.
 
     - ``vertices`` (n, 3): float32, relative to ``origin``; or float64, in the model
     - ``normals`` (n, 3): float32, unit; None if vertices are shared across creases
@@ -171,13 +73,20 @@ class Mesh:
 
     def __init__(self) -> None:
         self._store: dict[str, np.ndarray] = {}
-        self._plan: _Plan | None = None
+        self._plan: Plan | None = None
         self._set: Handle | None = None
         self._wanted: dict[str, Any] = {}
         self._tolerance = float("inf")
+        self.vertices = self._float = np.zeros((0, 3), np.float32)
+        self.normals, self.uv = np.zeros((0, 3), np.float32), np.zeros((0, 2), np.float32)
+        self.faces, self.patches = np.zeros((0, 3), np.uint32), np.zeros(0, np.uint32)
+        self.quads, self.quad_patches = np.zeros((0, 4), np.uint32), np.zeros(0, np.uint32)
+        self.origin = np.zeros(3)
+        self.bound, self.gap, self.angle, self.pixels = float("inf"), 0.0, 0.0, 0.0
+        self.is_certified, self.open_edges = False, 0
 
     def _make(self, patches: Handle, wanted: dict[str, Any], progress: Progress | None) -> None:
-        plan = _Plan(patches, wanted, progress and (lambda share: progress(share / 2)))
+        plan = Plan(patches, wanted, progress and (lambda share: progress(share / 2)))
         self._set, self._wanted, self._plan = patches, wanted, plan
         self._write(progress and (lambda share: progress(0.5 + share / 2)))
 
@@ -196,9 +105,9 @@ class Mesh:
     def _take(self, info: Any) -> Any:
         """Takes what is proven from a plan, and memory for its mesh."""
         assert self._set is not None
-        is_double = _is_double(self._wanted)
+        has_double = is_double(self._wanted)
         self._float = self._records("float", info.vertices, 3, np.float32)
-        self.vertices = self._records("double", info.vertices, 3, np.float64) if is_double else self._float
+        self.vertices = self._records("double", info.vertices, 3, np.float64) if has_double else self._float
         self.normals = self._records("normals", info.vertices, 3, np.float32) if info.has_normals else None
         has_uv = self._wanted.get("uv") is not None or not self._wanted.get("share_vertices")
         self.uv = self._records("uv", info.vertices, 2, np.float32) if has_uv else None
@@ -206,7 +115,7 @@ class Mesh:
         self.patches = self._records("patches", info.triangles, 1, np.uint32)
         self.quads = self._records("quads", info.quads, 4, np.uint32)
         self.quad_patches = self._records("quad_patches", info.quads, 1, np.uint32)
-        self.origin = np.zeros(3) if is_double else np.array(self._set._info().origin)
+        self.origin = np.zeros(3) if has_double else np.array(self._set._info().origin)
         self.bound, self.gap, self.angle, self.pixels = info.bound, info.gap, info.angle, info.pixels
         self._tolerance = info.tolerance
         self.is_certified, self.open_edges = bool(info.is_certified), info.open_edges
@@ -249,7 +158,7 @@ class Mesh:
         if view is not None:
             options = struct("tsr_plan_options")
             library.tsr_plan_defaults(ctypes.byref(options))
-            _fill_view(options, view)
+            fill_view(options, view)
             call(library.tsr_plan_set_view, self._plan._handle, ctypes.byref(options))
         topology = ctypes.c_int32()
         run(
@@ -299,6 +208,19 @@ class Mesh:
         if not len(self.quads):
             return self.faces
         return np.concatenate([self.faces, self.quads[:, [0, 1, 2]], self.quads[:, [0, 2, 3]]])
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """The box of the vertices in the model: its lowest and its highest corner, (2, 3). Errors: StateError if there
+        are none."""
+        if not len(self.vertices):
+            raise StateError("the mesh has no vertices, so it has no bounds", "invalid_argument")
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)], np.float64) + self.origin
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether there are triangles, and each of their edges belongs to two."""
+        return bool(len(self.faces) or len(self.quads)) and self.open_edges == 0
 
     def to_trimesh(self) -> Any:
         """Returns a trimesh.Trimesh in the model's coordinates."""

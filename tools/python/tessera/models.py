@@ -17,6 +17,8 @@ from .jets import Jets, evaluate_surface
 from .meshes import Mesh, warn_of_rounding
 from .patches import PatchSetBase
 from .rays import SceneBase
+from .splines import CheckedSpline, Spline
+from .surfaces import SurfaceBase, spline_of_patches
 
 _UNIT, _WARNING, _SURFACE, _KIND, _SHAPE, _INSTANCE = range(6)
 
@@ -32,8 +34,15 @@ class Instance:
     first_surface: int
 
 
-class Surface:
-    """A surface of a model."""
+class Surface(SurfaceBase):
+    """A surface of a model: ``name``, ``kind``, ``domain`` [[u0, u1], [v0, v1]], ``loops``, the number of trimming
+    loops, and ``degree``, ``knots``, ``points``, ``weights`` of the spline that it is, whose arrays are read-only.
+
+    >>> import tessera as ts
+    >>> bowl = ts.read(goblet)["goblet"]
+    >>> bowl.degree, bowl.points.shape, bowl.is_rational
+    ((2, 3), (9, 34, 3), True)
+    """
 
     def __init__(self, model: Model, index: int) -> None:
         self.model, self.index = model, index
@@ -49,6 +58,12 @@ class Surface:
     @property
     def kind(self) -> str:
         return self.model._text(_KIND, self.index)
+
+    def _find_spline(self) -> CheckedSpline:
+        made = self.model._splines
+        if made is not None:
+            return made[self.index].checked()
+        return spline_of_patches(self.model._points(), self.index, self.name)
 
     def evaluate(
         self, u: Any, v: Any, derivatives: int = 0, quantities: Sequence[str] | None = None, out: Jets | None = None
@@ -82,10 +97,17 @@ class Model(Handle):
 
     _kind = "model"
 
-    def __init__(self, handle: ctypes.c_void_p, made_by: Callable[[], tuple[Any, ...]]) -> None:
-        """``made_by`` returns a function and arguments that make the model again, for pickle."""
-        self._handle, self._made_by = handle, made_by
+    def __init__(
+        self,
+        handle: ctypes.c_void_p,
+        made_by: Callable[[], tuple[Any, ...]],
+        splines: Sequence[Spline] | None = None,
+    ) -> None:
+        """``made_by`` returns a function and arguments that make the model again, for pickle; ``splines`` are its
+        surfaces, if it was made of them."""
+        self._handle, self._made_by, self._splines = handle, made_by, splines
         self._point_set: PatchSet | None = None
+        self._bounds: np.ndarray | None = None
 
     def _text(self, kind: int, index: int) -> str:
         text = library.tsr_model_text(self._handle, kind, index)
@@ -132,8 +154,22 @@ class Model(Handle):
         call(library.tsr_model_instance, self._handle, index, ctypes.byref(info))
         placement = np.eye(4)
         placement[:3, :] = np.array(info.placement).reshape(4, 3).T
-        colour = tuple(info.colour) if info.has_colour else None
+        red, green, blue, alpha = info.colour
+        colour = (red, green, blue, alpha) if info.has_colour else None
         return Instance(info.shape, self._text(_INSTANCE, index), placement, colour, info.first_surface)
+
+    @property
+    def surfaces(self) -> list[Surface]:
+        """The surfaces, in the order of their file."""
+        return list(self)
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """The box of the control points of all patches, which holds the surfaces: its lowest and its highest corner,
+        (2, 3). The box of a mesh, Mesh.bounds, is tighter."""
+        if self._bounds is None:
+            self._bounds = self.patches().box
+        return self._bounds.copy()
 
     def __len__(self) -> int:
         return self._info().surfaces

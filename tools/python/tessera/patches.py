@@ -13,7 +13,8 @@ from ._calls import Handle, Progress, call
 from ._library import library, struct
 from .errors import ArgumentError
 from .jets import Jets, evaluate_grid
-from .meshes import Mesh, View, mesh_for_view
+from .meshes import Mesh, mesh_for_view
+from .plans import View
 
 _WHOLE, _POINTS, _DOUBLE = 1, 2, 4
 

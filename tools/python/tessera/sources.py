@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,22 +12,10 @@ import numpy as np
 from ._arrays import address_of, array_of, pair_of
 from ._calls import call, run
 from ._library import library, struct
+from ._nets import MAX_DEGREE
 from .errors import ArgumentError, ArgumentTypeError, FileError
-from .models import Model
-
-MAX_DEGREE = 15
-
-
-@dataclass(frozen=True)
-class Spline:
-    """A spline surface: ``points`` (nu, nv, 3), ``degree`` an integer or one per direction, ``knots`` one array per
-    direction, ``weights`` (nu, nv). Without knots it is a Bezier patch; without weights it is polynomial."""
-
-    points: Any
-    degree: int | tuple[int, int] | None = None
-    knots: tuple[Any, Any] | None = None
-    weights: Any = None
-    name: str = ""
+from .models import Model, Surface
+from .splines import Spline, knots_pair
 
 
 def _packed(name: str, value: Any, kept: list[Any]) -> np.ndarray:
@@ -50,9 +37,8 @@ def _fill(to: Any, spline: Spline, kept: list[Any]) -> None:
             raise ArgumentError(f"weights: expected shape {points.shape[:2]}, found {weights.shape}")
         to.weights = address_of(weights)
     if spline.knots is not None:
-        knots_u, knots_v = (_packed(f"knots[{k}]", spline.knots[k], kept) for k in range(2))
-        if knots_u.ndim != 1 or knots_v.ndim != 1:
-            raise ArgumentError(f"knots: expected two lists of numbers, found {knots_u.shape} and {knots_v.shape}")
+        pair = knots_pair(spline.knots)
+        knots_u, knots_v = (_packed(f"knots[{k}]", pair[k], kept) for k in range(2))
         to.knots_u, to.knots_v = address_of(knots_u), address_of(knots_v)
         to.knot_count_u, to.knot_count_v = len(knots_u), len(knots_v)
     degree = spline.degree
@@ -112,15 +98,44 @@ def parse(text: str, name: str = "text") -> Model:
     return Model(handle, lambda: (parse, (text, name)))
 
 
-def model(*splines: Spline) -> Model:
-    """Makes a model of spline surfaces."""
+def model(*surfaces: Spline | Surface | Model) -> Model:
+    """Makes a model of spline surfaces, of surfaces of other models, and of all surfaces of models.
+
+    >>> import tessera as ts
+    >>> lower, upper = ts.read(goblet)["goblet"].split(v=5.0)
+    >>> ts.model(lower, upper, ts.read(goblet))
+    <Model 3 surfaces: 'goblet', 'goblet', 'goblet'>
+    """
+    return _model([spline for each in surfaces for spline in _splines_of(each)])
+
+
+def _splines_of(each: Any) -> list[Spline]:
+    """Returns the splines of an argument of model(), as copies."""
+    if isinstance(each, Model):
+        return [spline for surface in each for spline in _splines_of(surface)]
+    if isinstance(each, Surface):
+        if each.loops:
+            raise ArgumentError(
+                f"surface {each.name!r} has {each.loops} trimming loop{'s' * (each.loops != 1)}, which splines have "
+                "not; take its .spline for the whole surface"
+            )
+        return [each.spline]
+    if not isinstance(each, Spline):
+        raise ArgumentTypeError(f"model: expected splines, surfaces or models, found {type(each).__name__}")
+    knots = None if each.knots is None else tuple(map(np.array, knots_pair(each.knots)))
+    weights = None if each.weights is None else np.array(array_of("weights", each.weights))
+    return [Spline(np.array(array_of("points", each.points)), each.degree, knots, weights, each.name)]
+
+
+def _model(splines: list[Spline]) -> Model:
+    """Makes a model of splines whose arrays nobody changes."""
     kept: list[Any] = []  # the memory that the structs point to
     made = (type(struct("tsr_bspline")) * len(splines))()
     for index, spline in enumerate(splines):
         _fill(made[index], spline, kept)
     handle = ctypes.c_void_p()
     call(library.tsr_model_new, ctypes.byref(handle), made, len(splines))
-    return Model(handle, lambda: (model, splines))
+    return Model(handle, lambda: (model, tuple(splines)), splines)
 
 
 def bezier(points: Any, weights: Any = None, name: str = "") -> Model:
@@ -133,25 +148,23 @@ def bezier(points: Any, weights: Any = None, name: str = "") -> Model:
     points = np.array(array_of("points", points))
     weights = None if weights is None else np.array(array_of("weights", weights))
     if points.ndim != 4:
-        return model(Spline(points, weights=weights, name=name))
+        return _model([Spline(points, weights=weights, name=name)])
     if weights is not None and weights.shape != points.shape[:3]:
         raise ArgumentError(f"weights: expected shape {points.shape[:3]}, found {weights.shape}")
-    return model(
-        *(Spline(points[k], weights=None if weights is None else weights[k], name=name) for k in range(len(points)))
+    return _model(
+        [Spline(points[k], weights=None if weights is None else weights[k], name=name) for k in range(len(points))]
     )
 
 
 def nurbs(
-    degree: int | tuple[int, int], knots: tuple[Any, Any], points: Any, weights: Any = None, name: str = ""
+    degree: int | tuple[int, int], knots: Any, points: Any, weights: Any = None, name: str = ""
 ) -> Model:
-    """Makes a model of a spline surface; see Spline.
+    """Makes a model of a spline surface; see Spline. One list of knots holds for both directions.
 
     >>> import numpy as np, tessera as ts
     >>> knots = [0, 0, 0, 1, 2, 2, 2]
     >>> points = np.stack(np.meshgrid(range(4), range(4), [0.0], indexing="ij"), -1)[:, :, 0]
-    >>> len(ts.nurbs(degree=2, knots=(knots, knots), points=points).patches())
+    >>> len(ts.nurbs(degree=2, knots=knots, points=points).patches())
     4
     """
-    own = tuple(np.array(array_of(f"knots[{k}]", knots[k])) for k in range(2))
-    weights = None if weights is None else np.array(array_of("weights", weights))
-    return model(Spline(np.array(array_of("points", points)), degree, own, weights, name))
+    return model(Spline(points, degree, knots, weights, name))

@@ -53,7 +53,7 @@ def test_structs_are_those_of_the_header(header, sources, tmp_path):
 
 
 def test_values_are_those_of_the_header(header):
-    from tessera import meshes, patches, rays
+    from tessera import patches, plans, rays
 
     assert "TSR_MISS = 0, TSR_HIT, TSR_INVALID_RAY" in header
     assert (rays.MISS, rays.HIT, rays.INVALID_RAY) == (0, 1, 2)
@@ -61,6 +61,6 @@ def test_values_are_those_of_the_header(header):
     assert values["TSR_HIT_UNCERTIFIED"] == rays._UNCERTIFIED
     assert values["TSR_MAX_THREADS"] == _calls.MAX_THREADS
     for name in ("RELATIVE", "SHARE", "QUADS", "FEWEST", "SMALLEST", "DOUBLE", "APART"):
-        assert values[f"TSR_PLAN_{name}"] == getattr(meshes, f"_{name}")
+        assert values[f"TSR_PLAN_{name}"] == getattr(plans, f"_{name}")
     for name in ("WHOLE", "POINTS", "DOUBLE"):
         assert values[f"TSR_SET_{name}"] == getattr(patches, f"_{name}")

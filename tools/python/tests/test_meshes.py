@@ -30,6 +30,33 @@ def test_a_mesh_keeps_its_tolerance(goblet):
     assert np.abs(hits.t[found] - 1e-2).max() < 1e-4
 
 
+def test_bounds_and_closed_meshes(goblet):
+    for dtype in (np.float32, np.float64):
+        mesh = ts.bezier(wavy(2, 3) + [1e6, 0, 0]).patches().tessellate(1e-3, dtype=dtype)
+        assert mesh.bounds.dtype == np.float64 and mesh.bounds.shape == (2, 3)
+        assert mesh.bounds[0].tolist() == mesh.positions().min(axis=0).tolist()
+        assert mesh.bounds[:, 0].tolist() == [1e6, 1e6 + 2] and not mesh.is_closed
+    box = goblet.bounds
+    mesh = goblet.patches().tessellate(1e-3)
+    assert (box[0] <= mesh.bounds[0] + 1e-3).all() and (mesh.bounds[1] - 1e-3 <= box[1]).all()
+    assert mesh.is_closed and goblet.patches().tessellate(1e-2, quads=True).is_closed
+    box[:] = 0
+    assert goblet.bounds[1, 2] > 1  # a copy
+
+
+def test_an_empty_mesh():
+    mesh = ts.Mesh()
+    assert repr(mesh) == "<Mesh 0 vertices, 0 triangles, unproven>"
+    assert mesh.faces.shape == (0, 3) and mesh.vertices.shape == (0, 3) and not mesh.is_closed and mesh.nbytes == 0
+    assert mesh.positions().shape == (0, 3) and repr(pickle.loads(pickle.dumps(mesh))) == repr(mesh)
+    with pytest.raises(ts.StateError, match="no vertices"):
+        mesh.bounds
+    with pytest.raises(ts.StateError, match="not made of patches"):
+        mesh.update()
+    made = ts.bezier(wavy(1, 1)).patches().tessellate(1e-2, out=mesh)
+    assert made is mesh and len(mesh.faces) > 0
+
+
 def test_options():
     patches = ts.bezier(wavy(3, 3)).patches()
     fine, coarse = patches.tessellate(1e-3), patches.tessellate(1e-1)
@@ -203,8 +230,8 @@ def test_files_far_from_zero(tmp_path):
 def test_another_reader_finds_the_same_mesh(goblet, tmp_path):
     meshio = pytest.importorskip("meshio")
     mesh = goblet.patches().tessellate(1e-2)
-    mesh.save(tmp_path / "goblet.ply")
-    found = meshio.read(tmp_path / "goblet.ply")
+    mesh.save(tmp_path / "goblet.obj")  # its reader of .ply knows no numbers of faces, such as the patch
+    found = meshio.read(tmp_path / "goblet.obj")
     assert np.allclose(found.points, mesh.positions(), atol=1e-6)
     assert (found.cells_dict["triangle"] == mesh.faces).all()
 
