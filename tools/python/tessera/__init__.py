@@ -9,6 +9,7 @@
 
 from ._calls import threads
 from ._library import library as _functions
+from .curves import Curve, arc, circle, line, polyline
 from .errors import (
     ArgumentError,
     ArgumentTypeError,
@@ -26,6 +27,7 @@ from .models import Assembly, Instance, Model, PatchSet, Scene, Surface
 from .patches import Patch
 from .plans import View
 from .rays import HIT, INVALID_RAY, MISS, Hits
+from .shapes import cone, coons, cylinder, extrude, interpolate, plane, revolve, ruled, sphere, torus
 from .sources import bezier, model, nurbs, parse, read
 from .splines import Spline
 
@@ -40,6 +42,7 @@ __all__ = [
     "ArgumentTypeError",
     "Assembly",
     "CancelledError",
+    "Curve",
     "Error",
     "FileError",
     "Hits",
@@ -59,12 +62,26 @@ __all__ = [
     "Surface",
     "UnsupportedError",
     "View",
+    "arc",
     "bezier",
+    "circle",
+    "cone",
+    "coons",
+    "cylinder",
+    "extrude",
+    "interpolate",
     "limits",
+    "line",
     "measure",
     "model",
     "nurbs",
     "parse",
+    "plane",
+    "polyline",
     "read",
+    "revolve",
+    "ruled",
+    "sphere",
     "threads",
+    "torus",
 ]

@@ -78,6 +78,10 @@ def degree_of(name: str, value: Any) -> int:
     return integer_of(name, value, 1, MAX_DEGREE)
 
 
+def _times(count: int) -> str:
+    return f"{count} time{'s' * (count != 1)}"
+
+
 def check_knots(name: str, knots: np.ndarray, degree: int, count: int) -> None:
     """Raises an error unless the knots suit a degree and a number of control points."""
     if knots.ndim != 1 or len(knots) != count + degree + 1:
@@ -96,7 +100,7 @@ def check_knots(name: str, knots: np.ndarray, degree: int, count: int) -> None:
     inner = knots[(knots > knots[degree]) & (knots < knots[count])]
     values, counts = np.unique(inner, return_counts=True)
     if (counts > degree).any():
-        raise ArgumentError(f"{name}: inner knot {values[counts > degree][0]:g} stands more than {degree} times")
+        raise ArgumentError(f"{name}: inner knot {values[counts > degree][0]:g} stands more than {_times(degree)}")
 
 
 def spans_of(knots: np.ndarray, degree: int, at: np.ndarray) -> np.ndarray:
@@ -150,7 +154,7 @@ def new_knots_of(name: str, value: Any, knots: np.ndarray, degree: int) -> np.nd
         if not first < t < last:
             raise ArgumentError(f"{name}: {t:g} is no inner parameter of the domain [{first:g}, {last:g}]")
         if (knots == t).sum() + (new == t).sum() > degree:
-            raise ArgumentError(f"{name}: knot {t:g} would stand more than {degree} times")
+            raise ArgumentError(f"{name}: knot {t:g} would stand more than {_times(degree)}")
     return new
 
 

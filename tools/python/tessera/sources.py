@@ -102,9 +102,9 @@ def model(*surfaces: Spline | Surface | Model) -> Model:
     """Makes a model of spline surfaces, of surfaces of other models, and of all surfaces of models.
 
     >>> import tessera as ts
-    >>> lower, upper = ts.read(goblet)["goblet"].split(v=5.0)
-    >>> ts.model(lower, upper, ts.read(goblet))
-    <Model 3 surfaces: 'goblet', 'goblet', 'goblet'>
+    >>> left, right = ts.sphere()[0].split(u=0.5)
+    >>> ts.model(left, right, ts.torus(3, 1))
+    <Model 3 surfaces>
     """
     return _model([spline for each in surfaces for spline in _splines_of(each)])
 

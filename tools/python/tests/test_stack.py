@@ -14,6 +14,7 @@ STACK = {
     "_arrays": "arrays of NumPy as the library takes them",
     "_nets": "control nets of splines: knots, degrees, interpolation",
     "splines": "Spline, a surface as arrays, and its operations",
+    "curves": "Curve, and lines and arcs",
     "_calls": "how calls run; Handle, the base of all objects of the library",
     "limits": "what a machine can do",
     "jets": "the output of evaluations",
@@ -24,6 +25,7 @@ STACK = {
     "surfaces": "all of Surface but its model",
     "models": "Model, PatchSet, Scene, Assembly: each returns another one, and has an attribute that leads back",
     "sources": "functions that make models of files, text and arrays",
+    "shapes": "functions that make models of simple surfaces",
     "__init__": "the public names",
 }
 FOLDER = pathlib.Path(tessera.__file__).parent
