@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import importlib
 import os
 import warnings
 from dataclasses import dataclass
@@ -223,19 +224,29 @@ class Mesh:
         return bool(len(self.faces) or len(self.quads)) and self.open_edges == 0
 
     def to_trimesh(self) -> Any:
-        """Returns a trimesh.Trimesh in the model's coordinates."""
-        import trimesh
-
+        """Returns a trimesh.Trimesh in the model's coordinates. Errors: ImportError without the package trimesh."""
+        trimesh = _imported("trimesh")
         return trimesh.Trimesh(self.positions(), self.triangles(), vertex_normals=self.normals, process=False)
 
     def to_pyvista(self) -> Any:
-        """Returns a pyvista.PolyData in the model's coordinates."""
-        import pyvista
-
+        """Returns a pyvista.PolyData in the model's coordinates. Errors: ImportError without the package pyvista."""
+        pyvista = _imported("pyvista")
         mesh = pyvista.PolyData.from_regular_faces(self.positions(), self.triangles().astype(np.int64))
         if self.normals is not None:
             mesh.point_data["Normals"] = self.normals
         return mesh
+
+    def to_meshio(self) -> Any:
+        """Returns a meshio.Mesh in the model's coordinates, with triangles and quads, "normals" and "uv" of the points
+        where there are any, and the "patch" of each cell. Errors: ImportError without the package meshio."""
+        meshio = _imported("meshio")
+        cells, patches = [("triangle", self.faces.astype(np.int64))], [self.patches.astype(np.int64)]
+        if len(self.quads):
+            cells.append(("quad", self.quads.astype(np.int64)))
+            patches.append(self.quad_patches.astype(np.int64))
+        data = {"normals": self.normals, "uv": self.uv}
+        data = {name: np.array(array) for name, array in data.items() if array is not None}
+        return meshio.Mesh(self.positions(), cells, point_data=data, cell_data={"patch": patches})
 
     @property
     def nbytes(self) -> int:
@@ -273,6 +284,16 @@ class Mesh:
         self.__dict__.update(state, _plan=None, _store={})
         self.__dict__.setdefault("_float", self.vertices)
         self.__dict__.setdefault("_tolerance", float("inf"))
+
+
+def _imported(name: str) -> Any:
+    """Imports a package that Tessera does not need."""
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name != name:
+            raise
+        raise ImportError(f"Mesh.to_{name}() needs the package {name}: pip install {name}", name=name) from None
 
 
 def mesh_for_view(patches: Handle) -> Mesh:

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import sys
 import warnings
 
 import numpy as np
@@ -246,6 +247,28 @@ def test_pyvista(goblet):
     pytest.importorskip("pyvista")
     mesh = goblet.patches().tessellate(1e-2)
     assert mesh.to_pyvista().n_cells == len(mesh.faces)
+
+
+def test_meshio(goblet, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    mesh = goblet.patches().tessellate(1e-2, quads=True)
+    made = mesh.to_meshio()
+    assert (made.points == mesh.positions()).all()
+    assert (made.cells_dict["triangle"] == mesh.faces).all() and (made.cells_dict["quad"] == mesh.quads).all()
+    assert (made.point_data["normals"] == mesh.normals).all() and (made.point_data["uv"] == mesh.uv).all()
+    assert (made.cell_data["patch"][1] == mesh.quad_patches).all()
+    made.write(tmp_path / "goblet.vtu")
+    found = meshio.read(tmp_path / "goblet.vtu")
+    assert (found.points == mesh.positions()).all() and (found.cells_dict["quad"] == mesh.quads).all()
+    shared = goblet.patches().tessellate(1e-2, share_vertices=True).to_meshio()
+    assert list(shared.point_data) == [] and len(shared.cells) == 1
+
+
+@pytest.mark.parametrize("name", ["trimesh", "pyvista", "meshio"])
+def test_missing_packages_are_named(goblet, name, monkeypatch):
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ImportError, match=rf"to_{name}\(\) needs the package {name}: pip install {name}"):
+        getattr(goblet.patches().tessellate(1e-1), f"to_{name}")()
 
 
 def test_meshes_and_sets_are_pickled():
