@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import operator
 from typing import Any
 
@@ -40,6 +41,25 @@ def integer_of(name: str, value: Any, least: int, most: int) -> int:
         raise ArgumentTypeError(f"{name}: expected an integer, found {value!r}") from None
     if not least <= number <= most:
         raise ArgumentError(f"{name} is {number}, expected an integer from {least} to {most}")
+    return number
+
+
+def number_of(name: str, value: Any) -> float:
+    """Returns a finite number."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ArgumentTypeError(f"{name}: expected a number, found {value!r}") from None
+    if not math.isfinite(number):
+        raise ArgumentError(f"{name} is {number}, expected a finite number", "non_finite")
+    return number
+
+
+def positive_of(name: str, value: Any, zero: bool = False) -> float:
+    """Returns a finite number above 0, or 0 with ``zero``."""
+    number = number_of(name, value)
+    if number < 0 or (number == 0 and not zero):
+        raise ArgumentError(f"{name} is {number:g}, expected a finite number {'of 0 or more' if zero else 'above 0'}")
     return number
 
 
@@ -104,7 +124,8 @@ def out_view(name: str, array: np.ndarray, dtype: np.dtype, shape: tuple[int, ..
     check_output(name, array, dtype, shape if components == 1 else (*shape, components))
     if array.flags.c_contiguous:
         # Without strides the records are packed. The address comes from the buffer, since __array_interface__ takes 0.6 us.
-        return Out(ctypes.addressof(_NoBytes.from_buffer(array)), array.size // components)
+        buffer: Any = array  # which ctypes' stubs do not know
+        return Out(ctypes.addressof(_NoBytes.from_buffer(buffer)), array.size // components)
     flat = array.view()
     try:
         flat.shape = (-1,) if components == 1 else (-1, components)

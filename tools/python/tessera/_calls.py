@@ -59,7 +59,7 @@ def run(
     """
     count = _threads.get()
     if not is_long and progress is None:
-        options = None
+        options: Any = None
         if count:
             options = struct("tsr_run")
             options.threads = count

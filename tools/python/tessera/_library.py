@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+from typing import Any
 
 # --- Structs ----------------------------------------------------------------------------------------------------------
 # Members in order, without struct_size, which begins all but two.
@@ -95,7 +96,7 @@ _FUNCTIONS = {
     "tsr_set_grid_limit": "ipssppp",
 }
 
-_TYPES: dict[str, type] = {
+_TYPES: dict[str, Any] = {
     "int32": ctypes.c_int32,
     "uint32": ctypes.c_uint32,
     "int64": ctypes.c_int64,
@@ -118,7 +119,7 @@ _LETTERS = {
 
 
 def _declare_struct(name: str, members: str) -> None:
-    fields = [] if name in _WITHOUT_SIZE else [("struct_size", ctypes.c_size_t)]
+    fields: list[tuple[str, Any]] = [] if name in _WITHOUT_SIZE else [("struct_size", ctypes.c_size_t)]
     for member in members.split(", "):
         kind, field = member.split(" ")
         field, _, length = field.partition("[")
@@ -172,10 +173,10 @@ def _load() -> ctypes.CDLL:
             + ", ".join(str(file) for file in places)
             + ". Build the target tessera_c_library, or name the file by TESSERA_C_LIBRARY"
         )
-    for name, (result, *arguments) in _FUNCTIONS.items():
+    for name, letters in _FUNCTIONS.items():
         function = getattr(library, name)
-        function.restype = _LETTERS[result]
-        function.argtypes = [_LETTERS[argument] for argument in arguments]
+        function.restype = _LETTERS[letters[0]]
+        function.argtypes = [_LETTERS[letter] for letter in letters[1:]]
     return library
 
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import array_of, integer_of
-from .errors import ArgumentError, ArgumentTypeError
+from ._arrays import array_of, integer_of, number_of
+from .errors import ArgumentError
 
 MAX_DEGREE = 15
 
@@ -53,25 +53,6 @@ def vector_of(name: str, value: Any) -> np.ndarray:
     if vector.shape != (3,):
         raise ArgumentError(f"{name}: expected 3 numbers, found shape {vector.shape}")
     return vector
-
-
-def number_of(name: str, value: Any) -> float:
-    """Returns a finite number."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ArgumentTypeError(f"{name}: expected a number, found {value!r}") from None
-    if not np.isfinite(number):
-        raise ArgumentError(f"{name} is {number}, expected a finite number", "non_finite")
-    return number
-
-
-def positive_of(name: str, value: Any, zero: bool = False) -> float:
-    """Returns a finite number above 0, or 0 with ``zero``."""
-    number = number_of(name, value)
-    if number < 0 or (number == 0 and not zero):
-        raise ArgumentError(f"{name} is {number:g}, expected a number {'of 0 or more' if zero else 'above 0'}")
-    return number
 
 
 def degree_of(name: str, value: Any) -> int:

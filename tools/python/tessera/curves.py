@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import integer_of
+from ._arrays import integer_of, number_of, positive_of
 from ._nets import (
     MAX_DEGREE,
     bezier_knots,
@@ -22,8 +22,6 @@ from ._nets import (
     homogeneous,
     insert,
     new_knots_of,
-    number_of,
-    positive_of,
     split,
     vector_of,
 )

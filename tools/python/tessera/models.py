@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import index_of
+from ._arrays import index_of, positive_of
 from ._calls import Handle, call
 from ._library import library, struct
 from .jets import Jets, evaluate_surface
@@ -188,6 +188,7 @@ class Model(Handle):
     def join(self, distance: float = 0.0) -> Model:
         """Returns a model whose faces share edges where these run side by side within ``distance``; 0: as suits."""
         handle = ctypes.c_void_p()
+        distance = positive_of("distance", distance, zero=True)
         call(library.tsr_model_join, ctypes.byref(handle), self._handle, distance)
         return Model(handle, lambda: (Model.join, (self, distance)))
 

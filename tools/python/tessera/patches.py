@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, check_out, index_of, integer_of
+from ._arrays import address_of, array_of, check_out, index_of, integer_of, positive_of
 from ._calls import Handle, Progress, call
 from ._library import library, struct
 from .errors import ArgumentError
@@ -93,7 +93,7 @@ class PatchSetBase(Handle):
         options = struct("tsr_set_options")
         options.shape = -1 if shape is None else integer_of("shape", shape, 0, 2**63 - 1)
         options.flags = _WHOLE * bool(whole) | _POINTS * bool(points) | _DOUBLE * bool(double)
-        options.fit_tolerance = fit_tolerance or 0
+        options.fit_tolerance = 0 if fit_tolerance is None else positive_of("fit_tolerance", fit_tolerance)
         self._make(library.tsr_set_new, model._handle, ctypes.byref(options))
         self._count: int = self._info().patches
 

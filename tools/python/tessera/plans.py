@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, integer_of, pair_of, vectors_of
+from ._arrays import address_of, array_of, integer_of, number_of, pair_of, positive_of, vectors_of
 from ._calls import Handle, Progress
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError
@@ -56,13 +56,12 @@ def _fill(options: Any, wanted: dict[str, Any]) -> np.ndarray | None:
         of_surfaces = np.ascontiguousarray(array_of("tolerance", wanted["tolerance"])).ravel()
         options.surface_tolerances, options.surface_tolerance_count = address_of(of_surfaces), len(of_surfaces)
         wanted = {**wanted, "tolerance": None}
-    limits = ("tolerance", "angle", "pixels", "crease_angle", "weld", "max_gap", "headroom")
-    for name in limits:
+    for name in ("tolerance", "angle", "pixels"):
+        if wanted.get(name) is not None:  # 0 stands for none in C
+            setattr(options, name, positive_of(name, wanted[name]))
+    for name in ("crease_angle", "weld", "max_gap", "headroom"):
         if wanted.get(name) is not None:
-            try:
-                setattr(options, name, wanted[name])
-            except TypeError:
-                raise ArgumentTypeError(f"{name}: expected a number, found {wanted[name]!r}") from None
+            setattr(options, name, number_of(name, wanted[name]))
     if wanted.get("max_triangles") is not None:
         options.max_triangles = integer_of("max_triangles", wanted["max_triangles"], 1, 2**64 - 1)
     if wanted.get("rates") is not None:
@@ -94,6 +93,8 @@ def _fill(options: Any, wanted: dict[str, Any]) -> np.ndarray | None:
 
 def fill_view(options: Any, view: View) -> None:
     """Fills the camera of a tsr_plan_options."""
+    if not isinstance(view, View):
+        raise ArgumentTypeError(f"view: expected a View, found {type(view).__name__}")
     for name in ("eye", "target", "up"):
         vector = vectors_of(f"view.{name}", getattr(view, name))
         if vector.shape != (3,):
@@ -101,7 +102,7 @@ def fill_view(options: Any, view: View) -> None:
         getattr(options, name)[:] = vector.tolist()
     for name in ("field_of_view", "extent", "near_distance"):
         if getattr(view, name) is not None:
-            setattr(options, name, getattr(view, name))
+            setattr(options, name, number_of(f"view.{name}", getattr(view, name)))
     for name in ("width", "height"):
         setattr(options, name, integer_of(f"view.{name}", getattr(view, name), 1, MAX_PIXELS))
 

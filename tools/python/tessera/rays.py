@@ -8,7 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import address_of, array_of, check_out, in_view, integer_of, names_of, out_view, records_of, vectors_of
+from ._arrays import (
+    address_of,
+    array_of,
+    check_out,
+    in_view,
+    integer_of,
+    names_of,
+    out_view,
+    positive_of,
+    records_of,
+    vectors_of,
+)
 from ._calls import Handle, call, run
 from ._library import library, struct
 from .errors import ArgumentError
@@ -155,7 +166,8 @@ class SceneBase(Handle):
         self._options = (tolerance, pieces, editable)
         options = struct("tsr_scene_options")
         library.tsr_scene_defaults(ctypes.byref(options))
-        options.tolerance, options.is_editable = tolerance or 0, bool(editable)
+        options.tolerance = 0 if tolerance is None else positive_of("tolerance", tolerance)
+        options.is_editable = bool(editable)
         options.pieces = integer_of("pieces", pieces, 1, 8)
         self._make(library.tsr_scene_new, patches._handle, ctypes.byref(options))
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import integer_of
-from ._nets import MAX_DEGREE, finite_of, interpolated, number_of, positive_of, vector_of
+from ._arrays import integer_of, number_of, positive_of
+from ._nets import MAX_DEGREE, finite_of, interpolated, vector_of
 from .curves import Curve, arc, frame_of, line, turned
 from .errors import ArgumentError, ArgumentTypeError
 from .models import Model

@@ -19,7 +19,7 @@ from .splines import Spline, knots_pair
 
 
 def _packed(name: str, value: Any, kept: list[Any]) -> np.ndarray:
-    array = np.ascontiguousarray(array_of(name, value))
+    array = np.asarray(array_of(name, value), order="C")
     kept.append(array)
     return array
 

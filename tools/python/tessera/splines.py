@@ -26,6 +26,8 @@ from .errors import ArgumentError, ArgumentTypeError
 
 def knots_pair(knots: Any) -> tuple[np.ndarray, np.ndarray]:
     """Returns the knots of both directions, of one list for both or of one list per direction."""
+    if not hasattr(knots, "__len__") or isinstance(knots, (str, bytes)):
+        raise ArgumentTypeError(f"knots: expected one list of numbers, or one per direction, found {knots!r}")
     if len(knots) and all(np.ndim(knot) == 0 for knot in knots):
         return (array_of("knots", knots),) * 2
     if len(knots) != 2:

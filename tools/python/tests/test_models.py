@@ -156,6 +156,28 @@ def test_bad_splines(change, words):
         ts.nurbs(**{**good, **change})
 
 
+def test_one_list_of_knots_holds_for_both_directions():
+    points = wavy(1, 1)[0]
+    knots = [0, 0, 0, 1, 2, 2, 2]
+    one, two = ts.nurbs(2, knots, points), ts.nurbs(2, (knots, knots), points)
+    assert (one[0].evaluate(0.3, 1.7).position == two[0].evaluate(0.3, 1.7).position).all()
+    assert ts.nurbs(2, np.array(knots), points)[0].knots[1].tolist() == knots
+    with pytest.raises(ts.ArgumentError, match="one per direction, found 3 lists"):
+        ts.nurbs(2, [knots] * 3, points)
+    with pytest.raises(TypeError, match="knots: expected one list of numbers, or one per direction, found 3"):
+        ts.nurbs(2, 3, points)
+    with pytest.raises(ts.ArgumentError, match=r"points: expected shape \(nu, nv, 3\), found \(\)"):
+        ts.bezier(3)
+
+
+def test_zero_is_no_tolerance(goblet):
+    for call in (lambda: goblet.patches().rays(tolerance=0), lambda: goblet.patches(fit_tolerance=0)):
+        with pytest.raises(ts.ArgumentError, match="tolerance is 0, expected a finite number above 0"):
+            call()
+    with pytest.raises(ts.ArgumentError, match="distance is -1, expected a finite number of 0 or more"):
+        goblet.join(-1)
+
+
 def test_bad_types_of_arrays():
     for bad in (np.array([[["a"] * 3] * 2] * 2), np.ones((2, 2, 3), complex), np.ones((2, 2, 3), bool)):
         with pytest.raises(TypeError, match="expected float64 numbers, found dtype"):

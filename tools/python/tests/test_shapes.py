@@ -197,7 +197,7 @@ NAN = float("nan")
 @pytest.mark.parametrize(
     "make, words",
     [
-        (lambda: ts.sphere(0), "radius is 0, expected a number above 0"),
+        (lambda: ts.sphere(0), "radius is 0, expected a finite number above 0"),
         (lambda: ts.sphere(-1), "radius is -1, expected"),
         (lambda: ts.sphere(NAN), "radius is nan, expected a finite number"),
         (lambda: ts.sphere("2 m"), "radius: expected a number, found '2 m'"),
@@ -206,7 +206,7 @@ NAN = float("nan")
         (lambda: ts.sphere(1, axis=(0, 0, 0)), "axis is 0, expected a direction"),
         (lambda: ts.torus(1, 1), "minor is 1, expected below major, which is 1"),
         (lambda: ts.cylinder(1, 0), "height is 0"),
-        (lambda: ts.cone(1, 1, -1), "top is -1, expected a number of 0 or more"),
+        (lambda: ts.cone(1, 1, -1), "top is -1, expected a finite number of 0 or more"),
         (lambda: ts.plane(u=(1, 0, 0), v=(2, 0, 0)), "parallelogram without area"),
         (lambda: ts.revolve(CIRCLE, angle=0), "angle is 0, expected above 0 and at most 2 pi"),
         (lambda: ts.revolve(CIRCLE, angle=7), "angle is 7, expected"),
