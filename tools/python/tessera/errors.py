@@ -36,6 +36,10 @@ class ArgumentTypeError(Error, TypeError):
     """An argument of another type than expected, such as an array of strings."""
 
 
+class MissingError(Error, AttributeError):
+    """An array that was not computed: a quantity that was not asked for, or normals of a mesh that has none."""
+
+
 class FileError(Error, OSError):
     """A file that cannot be opened, read or written."""
 

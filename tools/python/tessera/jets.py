@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._arrays import array_of, check_out, in_view, integer_of, names_of, out_view, records_of
 from ._calls import Handle, run
 from ._library import library, struct
-from .errors import ArgumentError
+from .errors import ArgumentError, MissingError
 
 #: The quantities and their components.
 QUANTITIES = {
@@ -40,7 +40,8 @@ _LONG = 20_000  # points, below which a call is over at once
 
 
 class Jets:
-    """The output of an evaluation: one array per quantity, of shape (..., 3) or (...); None if it was not wanted.
+    """The output of an evaluation: one array per quantity, of shape (..., 3) or (...). The array of a quantity that was
+    not asked for is a MissingError; ``quantities`` lists those that are there.
 
     ``position``, ``du``, ``dv``, ``duu``, ``duv``, ``dvv``; ``normal``, unit, along du x dv; ``first_form`` (E, F, G)
     and ``second_form`` (L, M, N); ``gaussian`` and ``mean`` curvature; ``first_curvature`` >= ``second_curvature`` and
@@ -48,27 +49,35 @@ class Jets:
     to: ``Jets(position=array)``.
     """
 
-    position: np.ndarray | None = None
-    du: np.ndarray | None = None
-    dv: np.ndarray | None = None
-    duu: np.ndarray | None = None
-    duv: np.ndarray | None = None
-    dvv: np.ndarray | None = None
-    normal: np.ndarray | None = None
-    first_form: np.ndarray | None = None
-    second_form: np.ndarray | None = None
-    gaussian: np.ndarray | None = None
-    mean: np.ndarray | None = None
-    first_curvature: np.ndarray | None = None
-    second_curvature: np.ndarray | None = None
-    first_direction: np.ndarray | None = None
-    second_direction: np.ndarray | None = None
+    position: np.ndarray
+    du: np.ndarray
+    dv: np.ndarray
+    duu: np.ndarray
+    duv: np.ndarray
+    dvv: np.ndarray
+    normal: np.ndarray
+    first_form: np.ndarray
+    second_form: np.ndarray
+    gaussian: np.ndarray
+    mean: np.ndarray
+    first_curvature: np.ndarray
+    second_curvature: np.ndarray
+    first_direction: np.ndarray
+    second_direction: np.ndarray
 
     def __init__(self, **arrays: np.ndarray) -> None:
         unknown = arrays.keys() - QUANTITIES.keys()
         if unknown:
             raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
         self.__dict__.update(arrays)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> np.ndarray:
+            if name in QUANTITIES:
+                found = ", ".join(self.__dict__) or "none"
+                raise MissingError(f"{name} was not asked for: name it in quantities=[...]; there are {found}")
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @property
     def quantities(self) -> list[str]:

@@ -15,7 +15,7 @@ import numpy as np
 from ._arrays import address_of, out_view
 from ._calls import Handle, Progress, call, run
 from ._library import library, struct
-from .errors import ArgumentError, StateError
+from .errors import ArgumentError, MissingError, StateError
 from .plans import Plan, View, fill_view, is_double
 from .view import MAX_TRIANGLES, html_of
 
@@ -43,9 +43,9 @@ class Mesh:
     """A mesh, made by PatchSet.tessellate(); Mesh() is empty. Its arrays are views of memory that it may write again.
 
     - ``vertices`` (n, 3): float32, relative to ``origin``; or float64, in the model
-    - ``normals`` (n, 3): float32, unit; None if vertices are shared across creases
-    - ``uv`` (n, 2): float32, parameters of the surface, or as ``uv`` of tessellate() says; None if vertices are shared
-      without them
+    - ``normals`` (n, 3): float32, unit; MissingError if vertices are shared across creases: ``has_normals`` is False
+    - ``uv`` (n, 2): float32, parameters of the surface, or as ``uv`` of tessellate() says; MissingError if vertices are
+      shared without them: ``has_uv`` is False
     - ``faces`` (m, 3), ``patches`` (m,): uint32, vertices counter-clockwise, and the patch of each triangle
     - ``quads`` (q, 4), ``quad_patches`` (q,): uint32
     - ``bound``: the proven distance between surfaces and mesh; ``gap``: how far faces fail to meet at edges of the
@@ -58,8 +58,6 @@ class Mesh:
     """
 
     vertices: np.ndarray
-    normals: np.ndarray | None
-    uv: np.ndarray | None
     faces: np.ndarray
     patches: np.ndarray
     quads: np.ndarray
@@ -79,7 +77,8 @@ class Mesh:
         self._wanted: dict[str, Any] = {}
         self._tolerance = float("inf")
         self.vertices = self._float = np.zeros((0, 3), np.float32)
-        self.normals, self.uv = np.zeros((0, 3), np.float32), np.zeros((0, 2), np.float32)
+        self._normals: np.ndarray | None = np.zeros((0, 3), np.float32)
+        self._uv: np.ndarray | None = np.zeros((0, 2), np.float32)
         self.faces, self.patches = np.zeros((0, 3), np.uint32), np.zeros(0, np.uint32)
         self.quads, self.quad_patches = np.zeros((0, 4), np.uint32), np.zeros(0, np.uint32)
         self.origin = np.zeros(3)
@@ -87,9 +86,9 @@ class Mesh:
         self.is_certified, self.open_edges = False, 0
 
     def _make(self, patches: Handle, wanted: dict[str, Any], progress: Progress | None) -> None:
-        plan = Plan(patches, wanted, progress and (lambda share: progress(share / 2)))
+        plan = Plan(patches, wanted, _part_of(progress, 0.0))
         self._set, self._wanted, self._plan = patches, wanted, plan
-        self._write(progress and (lambda share: progress(0.5 + share / 2)))
+        self._write(_part_of(progress, 0.5))
 
     def _write(self, progress: Progress | None) -> None:
         """Describes the plan, takes memory and writes the mesh."""
@@ -109,9 +108,9 @@ class Mesh:
         has_double = is_double(self._wanted)
         self._float = self._records("float", info.vertices, 3, np.float32)
         self.vertices = self._records("double", info.vertices, 3, np.float64) if has_double else self._float
-        self.normals = self._records("normals", info.vertices, 3, np.float32) if info.has_normals else None
+        self._normals = self._records("normals", info.vertices, 3, np.float32) if info.has_normals else None
         has_uv = self._wanted.get("uv") is not None or not self._wanted.get("share_vertices")
-        self.uv = self._records("uv", info.vertices, 2, np.float32) if has_uv else None
+        self._uv = self._records("uv", info.vertices, 2, np.float32) if has_uv else None
         self.faces = self._records("faces", info.triangles, 3, np.uint32)
         self.patches = self._records("patches", info.triangles, 1, np.uint32)
         self.quads = self._records("quads", info.quads, 4, np.uint32)
@@ -133,10 +132,10 @@ class Mesh:
         """Returns the tsr_mesh of the arrays."""
         mesh = struct("tsr_mesh")
         mesh.position = in_out(self._float)
-        if self.normals is not None:
-            mesh.normal = in_out(self.normals)
-        if self.uv is not None:
-            mesh.parameter = in_out(self.uv)
+        if self._normals is not None:
+            mesh.normal = in_out(self._normals)
+        if self._uv is not None:
+            mesh.parameter = in_out(self._uv)
         if self.vertices is not self._float:
             mesh.position_f64 = in_out(self.vertices)
         mesh.triangles, mesh.triangle_patches = address_of(self.faces), address_of(self.patches)
@@ -211,6 +210,28 @@ class Mesh:
         return np.concatenate([self.faces, self.quads[:, [0, 1, 2]], self.quads[:, [0, 2, 3]]])
 
     @property
+    def normals(self) -> np.ndarray:
+        """Unit normals, (n, 3)."""
+        if self._normals is None:
+            raise MissingError("the mesh has no normals: its vertices are shared, and no crease_angle was given")
+        return self._normals
+
+    @property
+    def uv(self) -> np.ndarray:
+        """Parameters, (n, 2)."""
+        if self._uv is None:
+            raise MissingError("the mesh has no uv: its vertices are shared, and no uv was asked for")
+        return self._uv
+
+    @property
+    def has_normals(self) -> bool:
+        return self._normals is not None
+
+    @property
+    def has_uv(self) -> bool:
+        return self._uv is not None
+
+    @property
     def bounds(self) -> np.ndarray:
         """The box of the vertices in the model: its lowest and its highest corner, (2, 3). Errors: StateError if there
         are none."""
@@ -226,14 +247,14 @@ class Mesh:
     def to_trimesh(self) -> Any:
         """Returns a trimesh.Trimesh in the model's coordinates. Errors: ImportError without the package trimesh."""
         trimesh = _imported("trimesh")
-        return trimesh.Trimesh(self.positions(), self.triangles(), vertex_normals=self.normals, process=False)
+        return trimesh.Trimesh(self.positions(), self.triangles(), vertex_normals=self._normals, process=False)
 
     def to_pyvista(self) -> Any:
         """Returns a pyvista.PolyData in the model's coordinates. Errors: ImportError without the package pyvista."""
         pyvista = _imported("pyvista")
         mesh = pyvista.PolyData.from_regular_faces(self.positions(), self.triangles().astype(np.int64))
-        if self.normals is not None:
-            mesh.point_data["Normals"] = self.normals
+        if self._normals is not None:
+            mesh.point_data["Normals"] = self._normals
         return mesh
 
     def to_meshio(self) -> Any:
@@ -244,14 +265,14 @@ class Mesh:
         if len(self.quads):
             cells.append(("quad", self.quads.astype(np.int64)))
             patches.append(self.quad_patches.astype(np.int64))
-        data = {"normals": self.normals, "uv": self.uv}
-        data = {name: np.array(array) for name, array in data.items() if array is not None}
+        arrays = {"normals": self._normals, "uv": self._uv}
+        data = {name: np.array(array) for name, array in arrays.items() if array is not None}
         return meshio.Mesh(self.positions(), cells, point_data=data, cell_data={"patch": patches})
 
     @property
     def nbytes(self) -> int:
         """The bytes that were written."""
-        arrays = (self._float, self.normals, self.uv, self.faces, self.patches, self.quads, self.quad_patches)
+        arrays = (self._float, self._normals, self._uv, self.faces, self.patches, self.quads, self.quad_patches)
         double = self.vertices.nbytes if self.vertices is not self._float else 0
         return double + sum(array.nbytes for array in arrays if array is not None)
 
@@ -266,7 +287,7 @@ class Mesh:
         return f"<Mesh {len(self.vertices):,} vertices, {triangles}{quads}, {proven}>"
 
     def _html(self, name: str, note: str = "") -> str:
-        return html_of(name, np.asarray(self.vertices, np.float64), self.triangles(), self.normals, note)
+        return html_of(name, np.asarray(self.vertices, np.float64), self.triangles(), self._normals, note)
 
     def _repr_html_(self) -> str:
         if len(self.triangles()) <= MAX_TRIANGLES or self._set is None:
@@ -284,6 +305,14 @@ class Mesh:
         self.__dict__.update(state, _plan=None, _store={})
         self.__dict__.setdefault("_float", self.vertices)
         self.__dict__.setdefault("_tolerance", float("inf"))
+
+
+def _part_of(progress: Progress | None, start: float) -> Progress | None:
+    """Returns a function of half of the work."""
+    if progress is None:
+        return None
+    whole = progress
+    return lambda share: whole(start + share / 2)
 
 
 def _imported(name: str) -> Any:

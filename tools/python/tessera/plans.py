@@ -52,8 +52,9 @@ def _fill(options: Any, wanted: dict[str, Any]) -> np.ndarray | None:
     """Fills a tsr_plan_options. ``wanted``: options of PatchSet.tessellate(), and its defaults where one is missing.
     Returns the memory of tolerances that the options point into."""
     of_surfaces = None
-    if np.ndim(wanted.get("tolerance")) > 0:
-        of_surfaces = np.ascontiguousarray(array_of("tolerance", wanted["tolerance"])).ravel()
+    tolerance: Any = wanted.get("tolerance")
+    if np.ndim(tolerance) > 0:
+        of_surfaces = np.ascontiguousarray(array_of("tolerance", tolerance)).ravel()
         options.surface_tolerances, options.surface_tolerance_count = address_of(of_surfaces), len(of_surfaces)
         wanted = {**wanted, "tolerance": None}
     for name in ("tolerance", "angle", "pixels"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from ._arrays import (
 )
 from ._calls import Handle, call, run
 from ._library import library, struct
-from .errors import ArgumentError
+from .errors import ArgumentError, MissingError
 
 _BYTE, _INDEX, _DOUBLE = np.dtype(np.uint8), np.dtype(np.uint32), np.dtype(np.float64)
 #: The quantities of a hit: components and type.
@@ -51,28 +51,37 @@ class Hits:
 
     ``kind``: MISS, HIT or INVALID_RAY; ``flags``: bits of TSR_HIT_* in tessera_c.h; ``surface``, ``patch``; ``t``;
     ``uv`` in the surface's parameters and ``patch_uv`` in the patch's; ``position`` and unit ``normal``; ``du``,
-    ``dv`` by the surface's parameters; ``residual``: the distance from the ray. An array is None if it was not wanted.
+    ``dv`` by the surface's parameters; ``residual``: the distance from the ray. An array that was not asked for is a
+    MissingError.
     Made of arrays of the caller, it is where to write to: ``Hits(t=array)``.
     """
 
-    kind: np.ndarray | None = None
-    flags: np.ndarray | None = None
-    surface: np.ndarray | None = None
-    patch: np.ndarray | None = None
-    t: np.ndarray | None = None
-    uv: np.ndarray | None = None
-    patch_uv: np.ndarray | None = None
-    position: np.ndarray | None = None
-    normal: np.ndarray | None = None
-    du: np.ndarray | None = None
-    dv: np.ndarray | None = None
-    residual: np.ndarray | None = None
+    kind: np.ndarray
+    flags: np.ndarray
+    surface: np.ndarray
+    patch: np.ndarray
+    t: np.ndarray
+    uv: np.ndarray
+    patch_uv: np.ndarray
+    position: np.ndarray
+    normal: np.ndarray
+    du: np.ndarray
+    dv: np.ndarray
+    residual: np.ndarray
 
     def __init__(self, **arrays: np.ndarray) -> None:
         unknown = arrays.keys() - QUANTITIES.keys()
         if unknown:
             raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
         self.__dict__.update(arrays)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> np.ndarray:
+            if name in QUANTITIES:
+                found = ", ".join(self.__dict__) or "none"
+                raise MissingError(f"{name} was not asked for: name it in quantities=[...]; there are {found}")
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @classmethod
     def empty(cls, shape: int | tuple[int, ...], quantities: Sequence[str] | None = None) -> Hits:
@@ -89,14 +98,14 @@ class Hits:
     @property
     def is_hit(self) -> np.ndarray:
         """Whether each ray meets a surface."""
-        if self.kind is None:
+        if "kind" not in self.__dict__:
             raise ArgumentError("is_hit needs the quantity kind")
         return self.kind == HIT
 
     @property
     def certified(self) -> np.ndarray:
         """Whether each ray has a hit that is proven to be the only root nearby."""
-        if self.flags is None:
+        if "flags" not in self.__dict__:
             raise ArgumentError("certified needs the quantities kind and flags")
         return self.is_hit & (self.flags & _UNCERTIFIED == 0)
 
@@ -105,7 +114,7 @@ class Hits:
         return sum(array.nbytes for array in self.__dict__.values())
 
     def __repr__(self) -> str:
-        if self.kind is None:
+        if "kind" not in self.__dict__:
             return f"<Hits {', '.join(self.__dict__)}>"
         rays, hits = self.kind.size, np.count_nonzero(self.is_hit)
         return f"<Hits of {rays:,} ray{'s' * (rays != 1)}: {hits:,} hit{'s' * (hits != 1)}>"

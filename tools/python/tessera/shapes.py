@@ -123,7 +123,7 @@ def ruled(first: Curve, second: Curve, name: str = "") -> Model:
     return _parsed("ruled", name, first=first, second=second.over(*first.domain))
 
 
-def coons(c1: Curve, c2: Curve, d1: Curve, d2: Curve, blend: str = "linear", name: str = "") -> Model:
+def coons(c1: Curve, c2: Curve, d1: Curve, d2: Curve, *, blend: str = "linear", name: str = "") -> Model:
     """Returns the Coons patch of four borders: ``c1`` = r(u, v0) and ``c2`` = r(u, v1), ``d1`` = r(u0, v) and
     ``d2`` = r(u1, v).
 

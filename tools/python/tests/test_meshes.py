@@ -68,8 +68,9 @@ def test_options():
     assert len(quads.quads) > 0 and quads.quads.shape[1] == 4 and len(quads.quad_patches) == len(quads.quads)
     assert len(quads.triangles()) == len(quads.faces) + 2 * len(quads.quads)
     shared = patches.tessellate(1e-2, share_vertices=True)
-    assert shared.normals is None and len(shared.vertices) < len(patches.tessellate(1e-2).vertices)
-    assert patches.tessellate(1e-2, share_vertices=True, crease_angle=0.5).normals is not None
+    assert not shared.has_normals and not shared.has_uv
+    assert len(shared.vertices) < len(patches.tessellate(1e-2).vertices)
+    assert patches.tessellate(1e-2, share_vertices=True, crease_angle=0.5).has_normals
     relative = patches.tessellate(1e-3, relative=True)
     assert relative.bound <= 1e-3 * np.linalg.norm(np.diff(patches.box, axis=0)) * 1.001
     turned = patches.tessellate(angle=0.2)
