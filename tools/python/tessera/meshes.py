@@ -17,7 +17,7 @@ from ._calls import Handle, Progress, call, run
 from ._library import library, struct
 from .errors import ArgumentError, MissingError, StateError
 from .plans import Plan, View, fill_view, is_double
-from .view import MAX_TRIANGLES, html_of
+from .view import MAX_TRIANGLES, Shown, view_of
 
 _VIEWED = 5e-4  # of the size: less than a pixel of the view in notebooks
 
@@ -39,7 +39,7 @@ class MeshReport:
     non_finite_vertices: int
 
 
-class Mesh:
+class Mesh(Shown):
     """A mesh, made by PatchSet.tessellate(); Mesh() is empty. Its arrays are views of memory that it may write again.
 
     - ``vertices`` (n, 3): float32, relative to ``origin``; or float64, in the model
@@ -286,14 +286,14 @@ class Mesh:
         triangles = f"{len(self.faces):,} triangle{'s' * (len(self.faces) != 1)}"
         return f"<Mesh {len(self.vertices):,} vertices, {triangles}{quads}, {proven}>"
 
-    def _html(self, name: str, note: str = "") -> str:
-        return html_of(name, np.asarray(self.vertices, np.float64), self.triangles(), self._normals, note)
+    def _view_as(self, name: str, note: str = "") -> tuple[str, bytes]:
+        return view_of(name, np.asarray(self.vertices, np.float64), self.triangles(), self._normals, note)
 
-    def _repr_html_(self) -> str:
+    def _view(self) -> tuple[str, bytes]:
         if len(self.triangles()) <= MAX_TRIANGLES or self._set is None:
-            return self._html(repr(self))
+            return self._view_as(repr(self))
         mesh = mesh_for_view(self._set)
-        return mesh._html(repr(self), f"; shown with {len(mesh.faces):,} triangles, within {mesh.bound:.3g}")
+        return mesh._view_as(repr(self), f"; shown with {len(mesh.faces):,} triangles, within {mesh.bound:.3g}")
 
     def __getstate__(self) -> dict[str, Any]:
         state = {name: value for name, value in self.__dict__.items() if name not in ("_plan", "_store")}

@@ -19,6 +19,7 @@ from .patches import PatchSetBase
 from .rays import SceneBase
 from .splines import CheckedSpline, Spline
 from .surfaces import SurfaceBase, spline_of_patches
+from .view import Shown
 
 _UNIT, _WARNING, _SURFACE, _KIND, _SHAPE, _INSTANCE = range(6)
 
@@ -87,7 +88,7 @@ class Surface(SurfaceBase):
         return f"<Surface {self.name!r}, {self.kind} on [{u0:g}, {u1:g}] x [{v0:g}, {v1:g}]{loops}>"
 
 
-class Model(Handle):
+class Model(Handle, Shown):
     """Surfaces, in the order of their file. ``model["name"]`` and ``model[index]`` return one.
 
     >>> import tessera as ts
@@ -232,8 +233,8 @@ class Model(Handle):
         shown = ": " + _shown(names, info.surfaces - len(names)) if names else ""
         return f"<Model {', '.join(parts)}{shown}>"
 
-    def _repr_html_(self) -> str:
-        return self.patches()._repr_html_()
+    def _view(self) -> tuple[str, bytes]:
+        return self.patches()._view()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return self._made_by()

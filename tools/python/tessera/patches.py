@@ -15,6 +15,7 @@ from .errors import ArgumentError
 from .jets import Jets, evaluate_grid
 from .meshes import Mesh, mesh_for_view
 from .plans import View
+from .view import Shown
 
 _WHOLE, _POINTS, _DOUBLE = 1, 2, 4
 
@@ -74,7 +75,7 @@ class Patch:
         return f"<Patch {self.index}, {kind} of degree {self.degree}, surface {self.surface}{', cut' * self.is_cut}>"
 
 
-class PatchSetBase(Handle):
+class PatchSetBase(Handle, Shown):
     """The calls of a PatchSet that need no Model."""
 
     _kind = "set"
@@ -215,5 +216,5 @@ class PatchSetBase(Handle):
             f"surface{'s' * (info.surfaces != 1)}, size {size:.3g}{fit}>"
         )
 
-    def _repr_html_(self) -> str:
-        return mesh_for_view(self)._html(repr(self))
+    def _view(self) -> tuple[str, bytes]:
+        return mesh_for_view(self)._view_as(repr(self))

@@ -1,4 +1,4 @@
-"""A view of a mesh for notebooks: one piece of HTML that needs no network."""
+"""A view of a mesh for notebooks: one piece of HTML that needs no network, and a picture where scripts do not run."""
 
 from __future__ import annotations
 
@@ -8,25 +8,59 @@ from typing import Any
 
 import numpy as np
 
+from ._picture import picture_of
+
 #: Triangles of a view. A larger mesh is shown by another one of its patches, or simplified.
 MAX_TRIANGLES = 50_000
 
 
-def html_of(name: str, vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None, note: str = "") -> str:
-    """Returns a frame that shows triangles, at most 2 MB. ``name``: what is shown, within brackets."""
+class Shown:
+    """An object that notebooks show: as a view with scripts (HTML) and as a picture (PNG), which remains where scripts
+    do not run, as in notebooks on GitHub and in PDF."""
+
+    def _view(self) -> tuple[str, bytes]:
+        """Returns the HTML and the PNG."""
+        raise NotImplementedError
+
+    def _repr_html_(self) -> str:
+        return self._view()[0]
+
+    def _repr_png_(self) -> bytes:
+        return self._view()[1]
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        html, png = self._view()
+        return {"text/plain": repr(self), "text/html": html, "image/png": base64.b64encode(png).decode()}
+
+
+def view_of(
+    name: str, vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None, note: str = ""
+) -> tuple[str, bytes]:
+    """Returns HTML that shows triangles, at most 2 MB, and their picture as PNG. ``name``: what is shown, within
+    brackets.
+
+    The picture lies behind the frame with the scripts, so that it is seen where the frame is taken out or where its
+    scripts do not run.
+    """
     import html  # here, so that the package is imported sooner
     import json
 
     if len(faces) > MAX_TRIANGLES:
         vertices, faces, normals = *_clustered(vertices, faces), None
         note = f"; shown simplified, with {len(faces):,} triangles"
-    data = _data_of(vertices, faces, _normals(vertices, faces) if normals is None else normals)
+    normals = _normals(vertices, faces) if normals is None else normals
+    data = _data_of(vertices, faces, normals)
+    png = picture_of(vertices, faces, normals)
     template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
     page = template.replace("@CAPTION@", html.escape(name[1:-1] + note)).replace("@DATA@", json.dumps(data))
+    place = "position: absolute; left: 0; top: 0; width: 100%; height: 100%; border: 0"
     return (
-        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" title="{html.escape(name)}" '
-        'style="width: 100%; height: 420px; border: 1px solid #ddd"></iframe>'
-    )
+        '<div style="position: relative; height: 420px; border: 1px solid #ddd; background: #fff">'
+        f'<img src="data:image/png;base64,{base64.b64encode(png).decode()}" alt="{html.escape(name)}" '
+        f'style="{place}; object-fit: contain">'
+        f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" title="{html.escape(name)}" style="{place}">'
+        "</iframe></div>"
+    ), png
 
 
 def _data_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import tessera
 
 STACK = {
     "errors": "exceptions",
+    "_picture": "triangles as PNG",
     "view": "triangles as HTML",
     "_library": "the C library, its structs and functions",
     "_arrays": "arrays of NumPy as the library takes them",

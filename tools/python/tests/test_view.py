@@ -5,8 +5,11 @@ import html
 import html.parser
 import json
 import re
+import struct
+import zlib
 
 import numpy as np
+import pytest
 
 import tessera as ts
 from conftest import wavy
@@ -88,7 +91,8 @@ def test_views_of_models_sets_and_meshes_without_normals(goblet):
 def test_names_cannot_leave_the_frame():
     model = ts.bezier([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]], name='"><script>alert(1)</script>')
     text = model._repr_html_()
-    assert text.count("<script>") == 0 and text.startswith("<iframe ") and text.endswith("</iframe>")
+    assert text.count("<script>") == 0 and text.count("<") == 5  # div, img, iframe and two ends
+    assert text.startswith("<div ") and text.endswith("</iframe></div>")
 
 
 def test_two_views_on_one_page_stay_apart(goblet, trimmed):
@@ -103,8 +107,79 @@ def test_two_views_on_one_page_stay_apart(goblet, trimmed):
     page = Page()
     page.feed(goblet._repr_html_() + trimmed._repr_html_() + goblet._repr_html_())
     # Each view is a frame without an origin: the page has no ids, names or scripts of it, and no access to it.
-    assert [tag for tag, _ in page.tags] == ["iframe"] * 3
-    for _, attributes in page.tags:
+    assert [tag for tag, _ in page.tags] == ["div", "img", "iframe"] * 3
+    frames = [attributes for tag, attributes in page.tags if tag == "iframe"]
+    for attributes in frames:
         assert attributes.keys() == {"srcdoc", "sandbox", "title", "style"} and attributes["sandbox"] == "allow-scripts"
-    first, second, third = (attributes["srcdoc"] for _, attributes in page.tags)
+    first, second, third = (attributes["srcdoc"] for attributes in frames)
     assert first == third != second
+
+
+def pixels_of(png):
+    """The pixels of a PNG of the picture, [row][column][3]."""
+    assert png.startswith(b"\x89PNG\r\n\x1a\n")
+    at, body = 8, b""
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at : at + 8])
+        data = png[at + 8 : at + 8 + length]
+        assert struct.unpack(">I", png[at + 8 + length : at + 12 + length])[0] == zlib.crc32(kind + data)
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", data[:10])
+        body += data if kind == b"IDAT" else b""
+        at += 12 + length
+    assert (depth, colour) == (8, 2)
+    lines = np.frombuffer(zlib.decompress(body), np.uint8).reshape(height, 1 + 3 * width)
+    assert (lines[:, 0] == 1).all()  # each row by differences from the left
+    return np.cumsum(lines[:, 1:].reshape(height, width, 3), axis=1, dtype=np.uint8)
+
+
+def test_a_picture_shows_a_sphere():
+    pixels = pixels_of(ts.sphere(3, (1e5, 0, 7))._repr_png_())
+    rows, columns = np.nonzero((pixels < 250).any(axis=2))
+    height, width, _ = pixels.shape
+    radius = 0.45 * height
+    assert len(rows) == pytest.approx(np.pi * radius**2, rel=0.02)
+    assert np.hypot(rows - height / 2, columns - width / 2).max() < radius + 2
+    blue, red = pixels[height // 2, width // 2, 2], pixels[height // 2, width // 2, 0]
+    assert blue > red  # the front
+    # Light comes from above.
+    assert pixels[height // 4, width // 2].sum() > pixels[3 * height // 4, width // 2].sum()
+
+
+def test_a_picture_hides_what_lies_behind():
+    above, below = ts.plane((0, 0, 0.3), name="above"), ts.plane((0, 0, 0), (0, 1, 0), (1, 0, 0), name="below")
+    for order in ((above, below), (below, above)):
+        pixels = pixels_of(ts.model(*order)._repr_png_()).astype(int)
+        is_blue = pixels[..., 2] > pixels[..., 0] + 20
+        is_orange = pixels[..., 0] > pixels[..., 2] + 20
+        # The upper square is whole; of the lower one, a part is seen beneath it.
+        assert is_blue.sum() > 1.5 * is_orange.sum() > 3000
+        assert np.nonzero(is_blue)[0].mean() < np.nonzero(is_orange)[0].mean()
+
+
+def test_z_is_up():
+    pixels = pixels_of(ts.cone(1, 3)._repr_png_())
+    is_cone = (pixels < 250).any(axis=2)
+    assert is_cone[: len(pixels) // 3].sum() < is_cone[-len(pixels) // 3 :].sum() / 2
+
+
+def test_pictures_of_nothing_and_of_too_much():
+    assert (pixels_of(ts.Mesh()._repr_png_()) == 255).all()
+    assert (pixels_of(ts.bezier(np.zeros((2, 2, 3)))._repr_png_()) == 255).all()
+    flat = ts.bezier([[[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0]]])  # without area
+    assert pixels_of(flat._repr_png_()).mean() > 250
+    # 3,000 large sheets, one behind the other, each of which covers a third of the picture.
+    points = np.zeros((3000, 2, 2, 3))
+    points[:, 1, :, 0] = points[:, :, 1, 1] = 1
+    points[..., 2] = np.linspace(0, 0.1, 3000)[:, None, None]
+    pixels = pixels_of(ts.bezier(points)._repr_png_())
+    assert 0.2 < (pixels < 250).any(axis=2).mean() < 0.6
+
+
+def test_notebooks_get_both(goblet):
+    for shown in (goblet, goblet.patches(), goblet.patches().tessellate(1e-2)):
+        bundle = shown._repr_mimebundle_()
+        assert bundle["text/plain"] == repr(shown) and bundle["text/html"] == shown._repr_html_()
+        png = base64.b64decode(bundle["image/png"])
+        assert png == shown._repr_png_() and 2_000 < len(png) < 60_000
+        assert bundle["image/png"] in bundle["text/html"]
