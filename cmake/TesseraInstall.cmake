@@ -19,7 +19,8 @@ function(tessera_install_component name target)
 endfunction()
 
 # tessera_install_python(): the package for Debian's Python, which looks in lib/pythonX.Y of /usr/local and in lib/python3
-# of /usr. It finds the C library beside it. Without Debian's Python nothing is installed.
+# of /usr. It finds the C library beside it. pip and importlib.metadata list it by its dist-info, which has
+# no RECORD, so that pip does not uninstall it. Without Debian's Python nothing is installed.
 function(tessera_install_python)
   if(NOT DEFINED TESSERA_PYTHON_DIR AND EXISTS /usr/bin/python3)
     execute_process(COMMAND /usr/bin/python3 -c "import sys; print('%d.%d' % sys.version_info[:2])"
@@ -33,6 +34,12 @@ function(tessera_install_python)
   if(TESSERA_PYTHON_DIR)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/tessera DESTINATION ${TESSERA_PYTHON_DIR} COMPONENT python3-tessera
       FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "__pycache__" EXCLUDE)
+    set(info ${PROJECT_BINARY_DIR}/python/tessera-${PROJECT_VERSION}.dist-info)
+    string(JOIN "\n" metadata "Metadata-Version: 2.1" "Name: tessera" "Version: ${PROJECT_VERSION}"
+      "Summary: ${PROJECT_DESCRIPTION}" "Requires-Python: >=3.9" "Requires-Dist: numpy>=1.22" "")
+    file(WRITE ${info}/METADATA "${metadata}")
+    file(WRITE ${info}/INSTALLER "cmake\n")
+    install(DIRECTORY ${info} DESTINATION ${TESSERA_PYTHON_DIR} COMPONENT python3-tessera)
   endif()
 endfunction()
 
