@@ -113,7 +113,11 @@ TEST_F(Files, FoldersAndPatternsTakeOneEach) {
   std::filesystem::create_directory(folder_ / "out");
   output_of({"tessellate", "m*.bpt", "-o", "out", "--grid", "2x2"});
   output_of({"tessellate", "m*.bpt", "-o", "out/{name}-fine.obj", "--grid", "4x4"});
-  output_of({"raycast", "m*.bpt", "-o", "out/", "--size", "16x16"});
+  const ToolRun drafts = run({"raycast", "m*.bpt", "-o", "out/", "--size", "16x16"});
+  EXPECT_EQ(drafts.status, 0);
+  EXPECT_NE(drafts.errors.find("3 pictures are drawn as drafts; --quality final takes"), std::string::npos);
+  EXPECT_EQ(run({"raycast", "m*.bpt", "-o", "out/", "--size", "16x16", "--quality", "final"}).errors, "");
+  EXPECT_EQ(run({"raycast", "m1.bpt", "-o", "out/m1.png", "--size", "16x16"}).errors, "");
   output_of({"eval", "m*.bpt", "-o", "out/{name}.csv", "--grid", "2x2"});
   for (const char* const name : {"m1.ply", "m2.ply", "m3.ply", "m1-fine.obj", "m2-fine.obj", "m3-fine.obj", "m1.png",
                                  "m2.png", "m3.png", "m1.csv", "m2.csv", "m3.csv"})

@@ -108,7 +108,8 @@ TEST_F(Terminal, SeveralFilesAreNamedInTheBar) {
   const TerminalRun run =
       show({"raycast", teapot, "m.bpt", "-o", "{name}.png", "--size", "700x700"}, {.errors_only = true});
   EXPECT_NE(run.screen.find("\r(1/2) teapot.bpt: casting rays ["), std::string::npos) << run.screen;
-  EXPECT_NE(run.screen.find("\r(2/2) m.bpt: casting rays ["), std::string::npos) << run.screen;
+  EXPECT_NE(run.screen.find("\r(2/2, about "), std::string::npos) << run.screen;
+  EXPECT_NE(run.screen.find(" s left) m.bpt: casting rays ["), std::string::npos) << run.screen;
 }
 
 TEST_F(Terminal, NoBarInAPipeAndOnADumbTerminal) {

@@ -123,10 +123,13 @@ Status run_jobs(const Plan& plan, const CommonOptions& options,
   for (const std::string& pattern : plan.unmatched) {
     fail({{pattern}, {}}, Status(StatusCode::io_error, pattern + ": expected files that match, found none"));
   }
+  const Stopwatch clock;
   for (std::size_t k = 0; k < plan.jobs.size(); ++k) {
     const Job& job = plan.jobs[k];
     if (plan.jobs.size() > 1) {
-      set_progress_subject("(" + std::to_string(k + 1) + "/" + std::to_string(plan.jobs.size()) + ") " +
+      const auto done = static_cast<double>(k), rest = static_cast<double>(plan.jobs.size() - k);
+      const std::string left = k == 0 ? "" : ", about " + duration_text(clock.seconds() * rest / done) + " left";
+      set_progress_subject("(" + std::to_string(k + 1) + "/" + std::to_string(plan.jobs.size()) + left + ") " +
                            fs::path(job.inputs[0]).filename().string());
     }
     Timings timings;

@@ -106,6 +106,11 @@ const std::map<std::string, render::Shade> shades{
     {"patch", render::Shade::patch},     {"error", render::Shade::error},     {"curvature", render::Shade::curvature},
     {"clay", render::Shade::clay},       {"steps", render::Shade::steps}};
 
+void make_draft(render::Settings& settings) {
+  settings.samples = 2;
+  settings.simple_light = true;
+}
+
 /// Adds the options that make sense only with a picture, and returns them.
 std::vector<const Option*> add_picture_options(Command& command, RaycastOptions& options) {
   const auto set_size = [&options](const std::string& text) {
@@ -123,9 +128,7 @@ std::vector<const Option*> add_picture_options(Command& command, RaycastOptions&
     options.settings.up = text == "x" ? render::Up::x : text == "y" ? render::Up::y : render::Up::z;
   };
   const auto set_quality = [&options](const std::string& text) {
-    if (text != "draft") return;
-    options.settings.samples = 2;
-    options.settings.simple_light = true;
+    if (text == "draft") make_draft(options.settings);
   };
   const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
   command.begin_group("Pictures");
@@ -149,7 +152,8 @@ std::vector<const Option*> add_picture_options(Command& command, RaycastOptions&
           &command.add_flag("--edges", "Draw lines where surfaces end or meet; on meshes, the edges of triangles",
                             options.edges),
           &command.add_choice("--quality", {"draft", "final"},
-                              "A draft has fewer rays per pixel and simple light; it takes a fifth of the time [final]",
+                              "A draft has fewer rays per pixel and simple light; it takes a fifth of the time "
+                              "[final; draft for several files]",
                               set_quality),
           &command.add_flag("--terminal", "Draw on standard output, even if it is no terminal", options.terminal)
                .exclude(picture),
@@ -256,6 +260,12 @@ void add_raycast(Command& tool, Session& session) {
     if (options->team) check_team(*options);
     if (auto& camera = options->settings.camera) camera->up = render::from_z_up({0, 0, 1}, options->settings.up);
     const Plan plan = plan_raycast(*options, session.common);
+    if (plan.jobs.size() > 1 && options->rays.empty() && command.option("--quality").count == 0) {
+      make_draft(options->settings);
+      if (!options->team)
+        complain(std::to_string(plan.jobs.size()) +
+                 " pictures are drawn as drafts; --quality final takes about five times as long");
+    }
     session.choose(plan, options, run_raycast);
   };
 }

@@ -25,15 +25,19 @@ std::string padded_percent(double share) {
 std::string time_left(double share, double seconds) {
   constexpr double enough = 0.5;  // seconds
   if (seconds < enough || share <= 0) return {};
-  const double left = seconds / share - seconds;
-  if (!(left < 359999)) return {};  // 99 hours
-  const int whole = static_cast<int>(std::ceil(left));
-  if (whole < 60) return " " + std::to_string(whole) + " s left";
-  const std::string rest = std::to_string(whole % 60);
-  return " " + std::to_string(whole / 60) + ":" + (rest.size() < 2 ? "0" : "") + rest + " left";
+  const std::string left = duration_text(seconds / share - seconds);
+  return left.empty() ? left : " " + left + " left";
 }
 
 }  // namespace
+
+std::string duration_text(double seconds) {
+  if (!(seconds < 359999)) return {};  // 99 hours
+  const int whole = static_cast<int>(std::ceil(seconds));
+  if (whole < 60) return std::to_string(whole) + " s";
+  const std::string rest = std::to_string(whole % 60);
+  return std::to_string(whole / 60) + ":" + (rest.size() < 2 ? "0" : "") + rest;
+}
 
 void set_progress_subject(std::string words) { subject() = std::move(words); }
 

@@ -31,6 +31,9 @@ class Progress {
   double shown_at_ = -1;  // seconds; below 0: not shown yet
 };
 
+/// "12 s" or "1:05", rounded up; empty from 99 hours on.
+std::string duration_text(double seconds);
+
 /// The text of the bar without control characters: "work [#####-----]  50% 3 s left", at most `columns` long.
 std::string progress_line(const std::string& work, double share, double seconds, int columns);
 
