@@ -20,6 +20,7 @@
 #include "tessera/execution.h"
 #include "tessera/generic_callable.h"
 #include "tessera/geometry.h"
+#include "tessera/gpu_mesh.h"
 #include "tessera/guard.h"
 #include "tessera/hermite_patch.h"
 #include "tessera/limits.h"
