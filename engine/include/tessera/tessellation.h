@@ -56,10 +56,8 @@ struct MeshChange {
 /// The plan of a mesh: how each patch is divided, and where its vertices and triangles lie.
 ///
 ///   auto plan = Tessellation::make(set, {.tolerance = 1e-3});
-///   Mesh mesh = *plan->allocate();
-///   plan->run(set, mesh.views());
-///   auto change = plan->update(set, {patches, points}, mesh.views());  // each frame
-///   if (change && change->topology) mesh = *plan->allocate(), plan->run(set, mesh.views());
+///   auto mesh = plan->mesh(set);
+///   auto change = plan->update(set, {patches, points}, *mesh);  // each frame
 ///
 /// - Bounds: the bound of each patch is proven, in both directions, rounding and welds included.
 /// - Decisions are local: the division and the vertices of a patch depend on the patch, the options, the set's origin
@@ -168,13 +166,15 @@ class Tessellation {
   /// unless execution.stores is plain. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
+  /// Allocates and writes the mesh in one call. Errors: those of allocate() and run().
+  Result<Mesh> mesh(const PatchSet& set, const Execution& execution = {}) const;
+
   /// Takes the view that the next update plans for, with or without edits. The plan, its bounds and what run() writes
   /// stay those of the view before until then. Errors, with nothing changed: invalid_argument (a view without a
   /// picture; the plan has no tolerance in pixels).
   ///
   ///   plan->set_view(camera);  // each frame
-  ///   auto change = plan->update(set, mesh.views());
-  ///   if (change && change->topology) mesh = *plan->allocate(), plan->run(set, mesh.views());
+  ///   auto change = plan->update(set, {}, mesh);
   Status set_view(const View& view);
   /// Follows edits: sets new control points, proves the tolerances again, and moves the vertices of these patches.
   ///
@@ -207,14 +207,18 @@ class Tessellation {
   /// Later updates allocate nothing if distances are the only tolerance and the topology is unchanged, except for a
   /// patch with a border that welding made a point.
   ///
-  /// Time: what the edited patches take, and for a new view about a fifth of a new plan, unless the topology changes or `fewest` is set and a patch cannot keep its
-  /// segments; both take up to the time of a new plan.
+  /// Time: what the edited patches take, unless the topology changes or `fewest` is set and a patch cannot keep its
+  /// segments; both take up to the time of a new plan. A new view takes about half of that, but all of it with cut
+  /// patches or edges of shapes.
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                             const Execution& execution = {});
-  /// Follows a new view, and the edits that the set has had since the last update, as above.
+  /// Follows a new view, and the edits that the set has had since the last update. Errors: as above.
   Result<MeshChange> update(PatchSet& set, const MeshViews& out, const Execution& execution = {}) {
     return update(set, PatchEdits{}, out, execution);
   }
+  /// Follows edits as above, and replaces `mesh`, which mesh() or an update has written, where the topology has
+  /// changed. Errors: those above, and those of mesh(): call that then.
+  Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, Mesh& mesh, const Execution& execution = {});
   /// Follows edits of spline surfaces: converts the patches that the moved control points act on, to the same bits as
   /// make_patch_set(), and updates as above.
   ///

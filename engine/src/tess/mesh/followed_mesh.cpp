@@ -67,7 +67,7 @@ Status ProvenMesh::set_view(const View& view) {
 Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                       const Execution& execution) {
   PatchSet::Impl& inner = impl_of(set);
-  if (inner.trims || plan_.closed()) return update_anew(set, edits, out, execution);
+  if (is_planned_anew_) return update_anew(set, edits, out, execution);
   if (Status status = start(set, edits, out, execution); !status.ok()) return status;
   CallProgress progress(execution, update_ends);
   // Edges and welds must be those of the plan: an update that finds edited patches has to find them anew.
@@ -188,9 +188,9 @@ std::size_t ProvenMesh::changed_patches(const ProvenMesh& other) const {
   compare(weld_.borders, other.weld_.borders);
   compare(weld_.corners, other.weld_.corners);
   compare(weld_.poles, other.weld_.poles);
-  compare(joins().borders, other.joins().borders);
-  compare(joins().corners, other.joins().corners);
-  compare(joins().poles, other.joins().poles);
+  compare(copies_in(joins_).borders, copies_in(other.joins_).borders);
+  compare(copies_in(joins_).corners, copies_in(other.joins_).corners);
+  compare(copies_in(joins_).poles, copies_in(other.joins_).poles);
   return static_cast<std::size_t>(std::count(changed.begin(), changed.end(), 1));
 }
 

@@ -57,6 +57,11 @@ struct Planned {
   CertifiedPlan plan;
 };
 
+/// Returns the distance that borders keep, as a length; 0 if there is none of their own.
+double border_tolerance_of(const TessellationOptions& options, double tolerance) {
+  return options.border_tolerance ? tolerance * (*options.border_tolerance / *options.tolerance) : 0;
+}
+
 /// Makes a plan. `tolerance`: the distance to keep, or any if there is a budget. `kept`: segments that
 /// patches keep where possible; if triangles then exceed their limit, none are kept.
 Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options, double tolerance,
@@ -72,8 +77,10 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     return found.status();
   };
   Status found = find_smallest();
+  const double of_borders = border_tolerance_of(options, tolerance);
   if (!planned->f64_positions)
-    planned->f64_patches = patches_that_need_f64(facts->needs, facts->borders.edges(), tolerance);
+    planned->f64_patches =
+        patches_that_need_f64(facts->needs, facts->borders.edges(), of_borders > 0 ? of_borders : tolerance);
   if (!planned->f64_positions && !planned->f64_patches.empty()) {
     // Doubles may keep a smaller tolerance than the one found, and other patches may need doubles for it.
     if (options.budget) std::ranges::fill(planned->f64_patches, 1);
@@ -82,7 +89,7 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     found = find_smallest();
   }
   if (!found.ok()) return found;
-  PlanRequest request{tolerance, planned->fewest, kept, options.max_triangles, options.headroom};
+  PlanRequest request{tolerance, planned->fewest, kept, options.max_triangles, of_borders, options.headroom};
   Result<CertifiedPlan> plan = make_limited_plan(*facts, request, execution);
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty()) {
     request.kept = {};
@@ -103,14 +110,16 @@ Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const 
   if (!isa) return isa.status();
   const Result<double> tolerance = before ? before->tolerance_ : tolerance_of(options, set);
   if (!tolerance) return tolerance.status();
-  const KeptSegments kept = before ? KeptSegments{before->plan_.patches().segments, options.spare} : KeptSegments{};
+  const KeptSegments kept = before && !options.border_tolerance
+                                ? KeptSegments{before->plan_.patches().segments, options.spare}
+                                : KeptSegments{};
   CallProgress progress(execution, planning_ends);
   Result<Planned> made = plan_for(set, options, *tolerance, kept, progress.loops());
   if (!made) return made.status();
   std::unique_ptr<ProvenMesh> mesh(
       new ProvenMesh(set, options, made->tolerance, std::move(made->plan), made->facts, *isa));
   if (Status status = mesh->join(impl_of(set), made->facts, progress.loops()); !status.ok()) return status;
-  if (before && !impl_of(set).trims && !mesh->plan_.closed())
+  if (before && !mesh->is_planned_anew_)
     mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->facts), mesh->of(impl_of(set)));
   (void)progress.finish({});
   return mesh;
@@ -141,6 +150,7 @@ ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, 
       origin_(set.origin()),
       revision_(set.revision()),
       is_certified_(set.fit_error().certified),
+      is_planned_anew_(impl_of(set).trims || plan_.closed() || options.border_tolerance),
       isa_(isa),
       tables_(MeshTables::of(impl_of(set), plan_.patches().divisions, kernel::kernels(isa).mesh_points != nullptr)) {}
 
@@ -175,9 +185,9 @@ Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const
     if (!status.ok()) return status;
   }
   const bool splits = options_.joining.share_vertices && has_parameters();
-  joins_ = std::make_unique<VertexCopies>(find_joins(
-      set, plan_, facts.borders.edges(), weld_, options_.joining.crease_angle ? &views.normal : nullptr,
-      options_.joining.crease_angle.value_or(0), splits ? &maps : nullptr));
+  joins_ = std::make_unique<VertexCopies>(
+      find_joins(set, plan_, facts.borders.edges(), weld_, options_.joining.crease_angle ? &views.normal : nullptr,
+                 options_.joining.crease_angle.value_or(0), splits ? &maps : nullptr));
   if (!options_.joining.share_vertices) return {};
   plan_.share(*joins_);
   weld_shared_corners();
@@ -223,7 +233,7 @@ Status ProvenMesh::write_copies(const PatchSet::Impl& set, const MeshViews& out,
                                 FunctionRef<bool(std::size_t patch)> is_written) const {
   if (Status status = write_welded(weld_, plan_, set, out, execution, is_written); !status.ok()) return status;
   if (plan_.shares_vertices() || out.normal.empty()) return {};
-  return write_joined_normals(joins(), plan_, out.normal, execution, is_written);
+  return write_joined_normals(copies_in(joins_), plan_, out.normal, execution, is_written);
 }
 
 Status ProvenMesh::run(const PatchSet& set, const MeshViews& out, const Execution& execution) const {

@@ -18,6 +18,12 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
 /// no size that it could be a share of).
 Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set);
 
+/// Returns copies that few plans have, or none.
+inline const VertexCopies& copies_in(const std::unique_ptr<VertexCopies>& slot) {
+  static const VertexCopies none;
+  return slot ? *slot : none;
+}
+
 /// A plan from tolerances.
 class ProvenMesh final : public Tessellation::Impl {
  public:
@@ -61,18 +67,14 @@ class ProvenMesh final : public Tessellation::Impl {
   Status write_copies(const PatchSet::Impl& set, const MeshViews& out, const Execution& execution,
                       FunctionRef<bool(std::size_t patch)> is_written) const;
 
-  const VertexCopies& joins() const {
-    static const VertexCopies none;
-    return joins_ ? *joins_ : none;
-  }
   PlanOfSet of(const PatchSet::Impl& set) const {
-    return {set, plan_, weld_, joins(), tolerance_, options_.spare, options_.headroom};
+    return {set, plan_, weld_, copies_in(joins_), tolerance_, options_.spare, options_.headroom};
   }
   /// Checks an update; after an error the set's values and the views are as they were.
   Status start(PatchSet& set, const PatchEdits& edits, const MeshViews& out, const Execution& execution);
   /// Makes the memory for proofs of a set.
   Status start_proofs(const PatchSet& set, const Execution& execution);
-  /// update() of a set with trims, or with edges of shapes.
+  /// update() where all is planned anew.
   Result<MeshChange> update_anew(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                  const Execution& execution);
   /// run() into views that need not have triangles.
@@ -90,18 +92,20 @@ class ProvenMesh final : public Tessellation::Impl {
   TessellationOptions options_;
   double tolerance_;
   CertifiedPlan plan_;
-  std::vector<PatchShape> shapes_;  ///< shapes before welding
-  VertexCopies weld_;               ///< vertices with a common position
+  std::vector<PatchShape> shapes_;       ///< shapes before welding
+  VertexCopies weld_;                    ///< vertices with a common position
   std::unique_ptr<VertexCopies> joins_;  ///< vertices with a common normal, or stored once; null if there are none
   std::size_t welded_borders_;
   Vec3 origin_;
   std::uint64_t revision_;  ///< the set's, of which the plan is proven
   bool is_certified_;
+  /// Whether updates plan all anew: a set with trims or with edges of shapes, or borders of a tolerance of their own.
+  bool is_planned_anew_;
+  bool is_view_new_ = false;  ///< whether the view of options_ is not the one that the plan is proven for
   Isa isa_;
   std::shared_ptr<const MeshTables> tables_;
   /// Made by the first update.
   std::unique_ptr<PlanUpdate> update_;
-  bool is_view_new_ = false;  ///< whether the view of options_ is not the one that the plan is proven for
   std::unique_ptr<TouchedBlocks> edits_;
 };
 

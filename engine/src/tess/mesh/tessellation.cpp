@@ -97,6 +97,13 @@ Status Tessellation::run(const PatchSet& set, const MeshViews& out, const Execut
   });
 }
 
+Result<Mesh> Tessellation::mesh(const PatchSet& set, const Execution& execution) const {
+  Result<Mesh> mesh = allocate();
+  if (!mesh) return mesh;
+  if (Status status = run(set, mesh->views(), execution); !status.ok()) return status;
+  return mesh;
+}
+
 Status Tessellation::set_view(const View& view) {
   return guarded([&] { return impl_->set_view(view); });
 }
@@ -117,6 +124,16 @@ Result<MeshChange> Tessellation::update(PatchSet& set, const PatchEdits& edits, 
     if (Status status = impl_->check_set(set); !status.ok()) return status;
     return impl_->update(set, edits, out, execution);
   });
+}
+
+Result<MeshChange> Tessellation::update(PatchSet& set, const PatchEdits& edits, Mesh& mesh,
+                                        const Execution& execution) {
+  Result<MeshChange> change = update(set, edits, mesh.views(), execution);
+  if (!change || !change->topology) return change;
+  Result<Mesh> next = this->mesh(set, {.cancel = execution.cancel, .stores = execution.stores});
+  if (!next) return next.status();
+  mesh = *std::move(next);
+  return change;
 }
 
 Result<MeshChange> Tessellation::update(PatchSet& set, std::span<const SurfaceEdits> edits, const MeshViews& out,

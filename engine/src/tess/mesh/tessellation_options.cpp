@@ -48,7 +48,8 @@ Status check_joining(const Joining& joining, const PatchSet& set) {
 struct Distances {
   std::optional<double> largest = {}, smallest = {};
 
-  explicit Distances(const TessellationOptions& options) : largest(options.tolerance), smallest(options.tolerance) {
+  explicit Distances(const TessellationOptions& options)
+      : largest(options.tolerance), smallest(options.border_tolerance ? options.border_tolerance : options.tolerance) {
     const std::vector<double>& of_surfaces = options.surface_tolerances;
     if (of_surfaces.empty()) return;
     const auto [least, most] = std::ranges::minmax(of_surfaces);
@@ -56,14 +57,29 @@ struct Distances {
   }
 };
 
+/// Checks the tolerance of borders.
+Status check_border_tolerance(const TessellationOptions& options, const PatchSet& set) {
+  if (!options.border_tolerance) return {};
+  const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
+  if (!options.tolerance || options.angle || options.pixels || options.fewest || options.headroom > 0)
+    return bad("a border tolerance needs a tolerance, and none of angle, pixels, headroom and fewest");
+  if (!(*options.border_tolerance > 0 && *options.border_tolerance <= *options.tolerance))
+    return bad("the border tolerance is " + text(*options.border_tolerance) +
+               ", it must be above 0 and at most the tolerance, " + text(*options.tolerance));
+  const bool closes = impl_of(set).edges && options.joining.close_edges;
+  return set.cut_count() == 0 && !closes
+             ? Status()
+             : Status(StatusCode::unsupported, "a border tolerance is for sets without cut patches and closed edges");
+}
+
 /// Checks the tolerances of surfaces.
 Status check_surface_tolerances(const TessellationOptions& options, const PatchSet& set) {
   const std::vector<double>& tolerances = options.surface_tolerances;
   if (tolerances.empty()) return {};
   if (options.tolerance || options.budget)
-    return {StatusCode::invalid_argument,
-            std::string("there are both surface tolerances and ") + (options.tolerance ? "a tolerance" : "a budget") +
-                " for all surfaces: set one of them"};
+    return {StatusCode::invalid_argument, std::string("there are both surface tolerances and ") +
+                                              (options.tolerance ? "a tolerance" : "a budget") +
+                                              " for all surfaces: set one of them"};
   if (tolerances.size() != set.surface_count())
     return {StatusCode::count_mismatch, "the set has " + counted(set.surface_count(), "surface") + ", found " +
                                             counted(tolerances.size(), "surface tolerance")};
@@ -87,6 +103,14 @@ void set_shares(const TessellationOptions& options, const PatchSet& set, Planner
   for (std::size_t patch = 0; patch < set.patch_count(); ++patch)
     planner.shares.push_back(share(options.surface_tolerances[set.source(patch).surface]));
   planner.least_share = share(*distances.smallest);
+}
+
+/// How borders are welded for the smallest tolerance of any surface, if there is one.
+WeldRules weld_rules(const TessellationOptions& options, std::optional<double> smallest, const PatchSet& set) {
+  if (options.joining.weld) return {.reach = *options.joining.weld};
+  if (smallest && !options.relative) return {at_most_max_weld(*smallest / 8, set), true};
+  const double size = set.model_box().diagonal();
+  return {smallest ? std::min(*smallest * size / 8, max_weld * size) : 1e-6 * size, true};
 }
 
 /// Checks how segments follow edits.
@@ -120,20 +144,14 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
                std::to_string(max_rate));
   if (options.pixels && !(options.pixels->pixels > 0 && std::isfinite(options.pixels->pixels)))
     return bad("the tolerance is " + text(options.pixels->pixels) + " pixels, it must be finite and above 0");
+  if (Status status = check_border_tolerance(options, set); !status.ok()) return status;
   if (options.joining.share_vertices && options.parameters == VertexParameters::patch)
     return bad("parameters of patches differ wherever patches meet, so no vertex could be shared: choose one of both");
   if (Status status = check_joining(options.joining, set); !status.ok()) return status;
   PlannerOptions planner;
   planner.closes_edges = options.joining.close_edges;
   planner.max_gap = options.joining.max_gap.value_or(std::numeric_limits<double>::infinity());
-  if (options.joining.weld) {
-    planner.weld.reach = *options.joining.weld;
-  } else if (smallest && !options.relative) {
-    planner.weld = {at_most_max_weld(*smallest / 8, set), true};
-  } else {
-    const double size = set.model_box().diagonal();
-    planner.weld = {smallest ? std::min(*smallest * size / 8, max_weld * size) : 1e-6 * size, true};
-  }
+  planner.weld = weld_rules(options, smallest, set);
   set_shares(options, set, planner);
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;

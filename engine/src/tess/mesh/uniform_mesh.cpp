@@ -209,7 +209,8 @@ class UniformMesh final : public Tessellation::Impl {
 
 Result<std::unique_ptr<Tessellation::Impl>> make_uniform_mesh(const PatchSet& set, const TessellationOptions& options) {
   const UniformRates rates = *options.rates;
-  if (options.tolerance || options.angle || options.pixels || options.budget || !options.surface_tolerances.empty())
+  if (options.tolerance || options.angle || options.pixels || options.budget || options.border_tolerance ||
+      !options.surface_tolerances.empty())
     return invalid("there are both rates and a tolerance: set one of them");
   if (set.cut_count() > 0)
     return Status(StatusCode::unsupported, "uniform rates need whole patches, and trimming loops cut " +

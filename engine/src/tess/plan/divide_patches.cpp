@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "block/patch_trims.h"
@@ -181,9 +183,8 @@ void keep_from_vanishing(const PlanFacts& facts, DividedPatches& patches) {
   }
 }
 
-}  // namespace
-
-void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& patches) {
+/// Chooses the borders, and raises the bounds of patches whose triangles cross their middles there.
+BorderSegments choose_borders(const PlanFacts& facts, double tolerance, DividedPatches& patches) {
   const PatchSet::Impl& set = facts.needs.set();
   const std::span<const PatchShape> shapes = facts.borders.shapes(facts.needs);
   const std::span<const PatchSegments> segments = patches.segments;
@@ -217,11 +218,65 @@ void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& pa
   };
   for (const auto& [k, distance] : make_refused_even(borders, facts.needs, tolerance, for_odd_borders))
     patches.bounds[k] = std::max(patches.bounds[k], distance);
-  patches.divisions.reserve(segments.size());
-  for (std::size_t k = 0; k < segments.size(); ++k)
-    patches.divisions.emplace_back().set(shapes[k], segments[k], borders.of(k));
+  return borders;
+}
+
+void divide(const PlanFacts& facts, const BorderSegments& borders, DividedPatches& patches) {
+  const std::span<const PatchShape> shapes = facts.borders.shapes(facts.needs);
+  patches.divisions.reserve(patches.segments.size());
+  for (std::size_t k = 0; k < patches.segments.size(); ++k)
+    patches.divisions.emplace_back().set(shapes[k], patches.segments[k], borders.of(k));
   patches.open_edges = borders.open_edges();
   keep_from_vanishing(facts, patches);
+}
+
+/// Returns rates up to `most` that keep a distance wherever triangles lie, also across the middle; empty if there are
+/// none.
+std::optional<Rates> rates_within(const ChordBound& chord, double distance, Rates most) {
+  ChordBound::Pieces pieces;
+  pieces.fill(chord.pieces()[0]);
+  const ChordBound anywhere(pieces);
+  const auto keeps = [&](Rates rates) { return anywhere.distance(rates) <= distance; };
+  const std::optional<Rates> best = anywhere.cheapest(distance, max_rate);
+  if (!best) return {};
+  const Rates capped{std::min(best->u, most.u), std::min(best->v, most.v)};
+  if (keeps(capped)) return capped;
+  for (const bool fixed_u : {true, false}) {
+    const int fixed = fixed_u ? capped.u : capped.v, other = fixed_u ? most.v : most.u;
+    const double needed = anywhere.needed(distance, fixed, fixed_u, false);
+    if (!(needed <= other)) continue;
+    const int rate = std::min(other, static_cast<int>(std::ceil(needed)));
+    const Rates rates = fixed_u ? Rates{fixed, rate} : Rates{rate, fixed};
+    if (keeps(rates)) return rates;
+  }
+  return {};
+}
+
+}  // namespace
+
+void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& patches) {
+  divide(facts, choose_borders(facts, tolerance, patches), patches);
+}
+
+void divide_within_borders(const PlanFacts& facts, double tolerance, double border_tolerance,
+                           DividedPatches& of_borders, DividedPatches& patches) {
+  const BorderSegments borders = choose_borders(facts, border_tolerance, of_borders);
+  patches.crosses.assign(patches.segments.size(), 0);
+  for (std::size_t k = 0; k < patches.segments.size(); ++k) {
+    const double left = tolerance - facts.needs.given(k);
+    const Rates most = of_borders.segments[k].rates();
+    const std::optional<Rates> rates =
+        left > 0 ? rates_within(facts.needs.chord(k), left, most) : std::optional<Rates>();
+    if (rates && double(rates->u) * rates->v < double(most.u) * most.v) {
+      patches.segments[k] = *rates;
+      patches.bounds[k] = rounded_up(facts.needs.chord(k).distance_of(*rates, true) + facts.needs.given(k));
+      patches.crosses[k] = 1;
+    } else {
+      patches.segments[k] = of_borders.segments[k];
+      patches.bounds[k] = of_borders.bounds[k];
+    }
+  }
+  divide(facts, borders, patches);
 }
 
 }}  // namespace tessera::abi_0_1

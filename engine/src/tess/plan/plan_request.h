@@ -45,6 +45,7 @@ struct PlanRequest {
   KeptSegments kept = {};
   /// A limit on the triangles of each cut patch, and for tolerances that messages propose.
   std::uint64_t max_triangles = std::numeric_limits<std::uint64_t>::max();
+  double border_tolerance = 0;  ///< see TessellationOptions::border_tolerance; 0: none
   double headroom = 0;   ///< the part of what the limits leave that new segments leave for edits; kept ones may take it
   double share = 1;      ///< the part of what the limits leave that cells may take
   double slack = 1;      ///< the factor by which the limits of a patch may be exceeded
