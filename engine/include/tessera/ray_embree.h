@@ -15,11 +15,78 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <span>
+
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
+
+/// The point of a patch that a ray leaves.
+struct EmbreeOrigin {
+  unsigned geometry = RTC_INVALID_GEOMETRY_ID;  ///< RTCHit::geomID; RTC_INVALID_GEOMETRY_ID: the ray leaves no patch
+  unsigned patch = 0;                           ///< RTCHit::primID
+  unsigned instance[RTC_MAX_INSTANCE_LEVEL_COUNT];  ///< RTCHit::instID; initially RTC_INVALID_GEOMETRY_ID
+#ifdef RTC_GEOMETRY_INSTANCE_ARRAY
+  unsigned instance_primitive[RTC_MAX_INSTANCE_LEVEL_COUNT];  ///< RTCHit::instPrimID
+#endif
+  double u = 0, v = 0;  ///< in the patch, [0,1]^2
+
+  EmbreeOrigin();
+  /// Takes the numbers of a hit of rtcIntersect1(), or of a lane (rtcGetHitFromHitN). A miss is no origin.
+  explicit EmbreeOrigin(const RTCHit& hit);
+};
+
+#if TESSERA_EMBREE_MAJOR == 4
+/// Embree's context of a query.
+using EmbreeQueryContext = RTCRayQueryContext;
+#else
+/// Embree's context of a query.
+using EmbreeQueryContext = RTCIntersectContext;
+#endif
+
+/// The context of a query whose rays leave patches. Pass its address to rtcIntersect and rtcOccluded, in Embree 4 in
+/// their arguments. It may be a base of the user's own context.
+///
+/// Effect: in the geometry and instance that its origin names, a ray begins at that point of the patch in double,
+/// whatever rounding has made of the ray's own origin, and it leaves the surfaces there as with Ray::spawn_offset. So
+/// tnear can be 0, at any size, angle and border. To all other geometries the ray is as it stands. Its own origin must
+/// be that point up to the rounding of float: a ray that goes on from elsewhere needs no origin, but a tnear.
+///
+/// - One origin is that of all rays of the call. Of several, RTCRay::id is the index; other ids have no origin.
+/// - An origin that names no geometry, no patch of it, or parameters that are NaN or outside of [0,1] is ignored: the
+///   ray is then one that leaves no patch. RayScene::resolve() returns an error for such numbers.
+/// - Plain contexts of Embree are never taken for this one. In Embree 3 a mark in RTCIntersectContext::flags tells
+///   them apart, which only set_coherent() keeps. In Embree 4 EmbreeGeometryOptions::origins does.
+///
+/// Memory: the origins are used where they lie, and must stay there during the call. The first ray with an origin after
+/// a build or a refit looks for the borders that patches share; if memory runs out, patches beside the origin's may be
+/// hit at the origin. Threads: one call at a time, since Embree writes instances to the context.
+struct EmbreeOriginContext : EmbreeQueryContext {
+  std::span<const EmbreeOrigin> origins;  ///< one for all rays, or one for each RTCRay::id, or none
+
+  /// `origins` may be empty, as in a query from the camera.
+  explicit EmbreeOriginContext(std::span<const EmbreeOrigin> origins = {});
+  /// For one ray, or several from one point. The origin must outlive the context.
+  explicit EmbreeOriginContext(const EmbreeOrigin& origin);
+  /// Deleted: the origin must outlive the context.
+  explicit EmbreeOriginContext(EmbreeOrigin&&) = delete;
+#if TESSERA_EMBREE_MAJOR != 4
+  /// Sets RTC_INTERSECT_CONTEXT_FLAG_COHERENT or RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, which is the initial value.
+  void set_coherent(bool coherent);
+
+ private:
+  using EmbreeQueryContext::flags;
+#endif
+};
+
+/// How a geometry is made.
+struct EmbreeGeometryOptions {
+  /// Embree 4 only, whose contexts have no flags: true if the context of each ray that may meet the geometry is an
+  /// EmbreeOriginContext. If false, origins are ignored. Embree 3 ignores this option.
+  bool origins = false;
+};
 
 /// Makes a user geometry of all patches of a scene in exact mode.
 ///
@@ -36,6 +103,7 @@ namespace tessera { inline namespace abi_0_1 {
 ///
 /// - The geometry is one primitive of Embree's, with a box around the whole scene, so the user's scene need not be
 ///   robust. The box is wide enough for Embree's rounding of rays that begin within 40,000 sizes of the scene.
+/// - Rays that leave a patch need no offset: see EmbreeOriginContext.
 /// - Inactive lanes of a packet need tnear > tfar as well as valid = 0: Embree 3.13 ignores `valid` of 16-wide packets
 ///   on machines without AVX-512, whatever the geometry.
 ///
@@ -48,7 +116,8 @@ namespace tessera { inline namespace abi_0_1 {
 ///
 /// Lifetime: the ray scene must outlive the geometry; it may be moved. While it is stale, rays meet none of its
 /// patches.
-Result<RTCGeometry> make_embree_geometry(const RayScene& scene, RTCDevice device);
+Result<RTCGeometry> make_embree_geometry(const RayScene& scene, RTCDevice device,
+                                         const EmbreeGeometryOptions& options = {});
 
 /// Takes the new boxes of the ray scene and commits the geometry. Call it after a refit or rebuild of the ray scene and
 /// before the user's own scenes are committed. Embree refits a geometry with RTC_BUILD_QUALITY_REFIT in a dynamic scene
@@ -57,7 +126,7 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry);
 
 /// Makes the geometry for the device of the scene `to`, attaches it and returns its id. The caller commits the scene.
 /// Errors: as make_embree_geometry().
-Result<unsigned> attach(const RayScene& scene, RTCScene to);
+Result<unsigned> attach(const RayScene& scene, RTCScene to, const EmbreeGeometryOptions& options = {});
 
 }}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop

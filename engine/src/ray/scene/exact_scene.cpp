@@ -69,6 +69,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   RayLine line(const Ray& ray, const Placement& placement) const override {
     return line_of(ray, placement, frame_, scene_box_);
   }
+  bool leave(std::uint32_t k, double u, double v, Ray& r) const noexcept override { return leave_from(k, u, v, r); }
   void trace(RayQuery& query) const override;
   void trace(std::span<RayQuery* const> queries) const override;
   void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const override;
@@ -86,7 +87,6 @@ class ExactScene final : public PatchScene, private ExactSource {
   Result<Hit> resolve(const Ray& ray, std::uint32_t patch, double u, double v) const override;
   using PatchScene::resolve;
   std::size_t own_patches() const { return options_.patches.value_or(set().patch_count()); }
-  Flatness flatness() const { return {std::ilogb(static_cast<double>(options_.pieces)), max_bend}; }
   double tolerance() const { return options_.tolerance.value_or(default_tolerance * size_) * frame_.scale; }
   /// Returns the radius of tubes around edges whose faces meet: roots beside them are right up to the tolerance.
   double tube_radius() const { return 4 * std::max(tolerance(), least_tolerance); }
@@ -143,7 +143,8 @@ Status ExactScene::build(const Execution& execution) {
   frame_ = SceneFrame::around(*box);
   updates_ = 0;
   adjacency_.forget();
-  if (Status status = nets_.plan(set(), frame_, flatness(), execution); !status.ok()) return status;
+  const Flatness flatness{std::ilogb(static_cast<double>(options_.pieces)), max_bend};
+  if (Status status = nets_.plan(set(), frame_, flatness, execution); !status.ok()) return status;
   if (Status status = trims_.build(set(), nets_.planned(), execution); !status.ok()) return status;
   tubes_.clear();
   if (options_.edges)
@@ -180,8 +181,7 @@ Status ExactScene::update(std::uint64_t since, const Execution& execution) {
 }
 
 void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const {
-  hit.flags = {};
-  hit.flags.edge = root.is_on_edge;
+  hit.flags = {.edge = root.is_on_edge};
   if (!root.certified) {
     hit.flags.uncertified = true;
     hit.flags.within_tolerance = root.residual > search_rounding(max_degree, max_degree, 0, 0);
@@ -224,8 +224,8 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
 
 /// Traces the queries, as a packet if the rays are coherent.
 void ExactScene::trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const {
-  const auto line = [&](std::size_t k) -> const RayLine& { return queries[k]->line; };
-  if (worth_a_packet(queries.size(), line)) return scene_.trace(queries, space);
+  if (worth_a_packet(queries.size(), [&](std::size_t k) -> const RayLine& { return queries[k]->line; }))
+    return scene_.trace(queries, space);
   for (RayQuery* query : queries) scene_.trace(*query, space);
 }
 

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
+#include "ray/embree/embree_origin.h"
 #include "ray/embree/embree_scene.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
@@ -61,16 +62,18 @@ class RootsBehind final : public RootFilter {
   double t_ = 0;
 };
 
-/// One call of Embree, with RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments.
+/// One call of Embree, with RTCIntersectFunctionNArguments or RTCOccludedFunctionNArguments. `has_origins`: its context
+/// is an EmbreeOriginContext.
 template <class Arguments>
 class SceneCall {
  public:
-  SceneCall(const Arguments* arguments, RTCRayN* rays)
-      : arguments_(arguments), rays_(rays), source_(source_of(arguments->geometryUserPtr)) {}
+  SceneCall(const Arguments* arguments, RTCRayN* rays, bool has_origins)
+      : arguments_(arguments), rays_(rays), source_(source_of(arguments->geometryUserPtr)), has_origins_(has_origins) {}
 
   /// Finds the nearest root on one of the rays that no filter rejects, as a hit; the ray then ends there.
   bool meet(unsigned k, RTCHit& hit) const {
-    const Ray ray = ray_of(rays_, arguments_->N, k);
+    Ray ray = ray_of(rays_, arguments_->N, k);
+    if (has_origins_) leave_origin(k, ray);
     if (!is_valid(ray)) return false;
     const RayLine line = source_.line(ray);
     if (line.empty) return false;
@@ -85,6 +88,14 @@ class SceneCall {
   }
 
  private:
+  void leave_origin(unsigned k, Ray& ray) const {
+    const EmbreeContext& context = *arguments_->context;
+    const EmbreeOrigin* const origin = origin_of(context, RTCRayN_id(rays_, arguments_->N, k));
+    if (origin == nullptr || !names(*origin, arguments_->geomID, context)) return;
+    const CountDenormals count;  // Embree's callers flush them
+    source_.leave(origin->patch, origin->u, origin->v, ray);
+  }
+
   void trace(RayQuery& query) const {
     const FlushDenormals flush;
     source_.trace(query);
@@ -118,11 +129,15 @@ class SceneCall {
   const Arguments* arguments_;
   RTCRayN* rays_;
   const ExactSource& source_;
+  bool has_origins_;
 };
 
+/// The functions of a geometry. `promised`: EmbreeGeometryOptions::origins.
+template <bool promised>
 void intersect_scene(const RTCIntersectFunctionNArguments* arguments) {
   if (!source_of(arguments->geometryUserPtr).fresh()) return;
-  const SceneCall call(arguments, RTCRayHitN_RayN(arguments->rayhit, arguments->N));
+  const SceneCall call(arguments, RTCRayHitN_RayN(arguments->rayhit, arguments->N),
+                       has_origins(*arguments->context, promised));
   for (unsigned k = 0; k < arguments->N; ++k) {
     RTCHit hit;
     if (arguments->valid[k] != 0 && call.meet(k, hit))
@@ -130,9 +145,10 @@ void intersect_scene(const RTCIntersectFunctionNArguments* arguments) {
   }
 }
 
+template <bool promised>
 void occlude_scene(const RTCOccludedFunctionNArguments* arguments) {
   if (!source_of(arguments->geometryUserPtr).fresh()) return;
-  const SceneCall call(arguments, arguments->ray);
+  const SceneCall call(arguments, arguments->ray, has_origins(*arguments->context, promised));
   for (unsigned k = 0; k < arguments->N; ++k) {
     RTCHit hit;
     if (arguments->valid[k] != 0 && call.meet(k, hit))
@@ -165,7 +181,8 @@ void commit_geometry(RTCGeometry geometry) {
 
 }  // namespace
 
-Result<RTCGeometry> make_embree_geometry(const RayScene& scene, RTCDevice device) {
+Result<RTCGeometry> make_embree_geometry(const RayScene& scene, RTCDevice device,
+                                         const EmbreeGeometryOptions& options) {
   return guarded([&]() -> Result<RTCGeometry> {
     if (device == nullptr) return Status(StatusCode::invalid_argument, "no Embree device");
     const Result<const ExactSource*> source = usable_source(scene);
@@ -174,8 +191,8 @@ Result<RTCGeometry> make_embree_geometry(const RayScene& scene, RTCDevice device
     if (geometry == nullptr) return Status(StatusCode::internal, "Embree: no geometry could be made");
     rtcSetGeometryUserData(geometry, const_cast<ExactSource*>(*source));
     rtcSetGeometryBoundsFunction(geometry, &bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, &intersect_scene);
-    rtcSetGeometryOccludedFunction(geometry, &occlude_scene);
+    rtcSetGeometryIntersectFunction(geometry, options.origins ? &intersect_scene<true> : &intersect_scene<false>);
+    rtcSetGeometryOccludedFunction(geometry, options.origins ? &occlude_scene<true> : &occlude_scene<false>);
 #if RTC_VERSION_MAJOR >= 4
     rtcSetGeometryEnableFilterFunctionFromArguments(geometry, true);
 #endif
@@ -196,11 +213,11 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry) {
   });
 }
 
-Result<unsigned> attach(const RayScene& scene, RTCScene to) {
+Result<unsigned> attach(const RayScene& scene, RTCScene to, const EmbreeGeometryOptions& options) {
   return guarded([&]() -> Result<unsigned> {
     if (to == nullptr) return Status(StatusCode::invalid_argument, "no Embree scene");
     const Owned<RTCDevice, DeviceRelease> device(rtcGetSceneDevice(to));
-    const Result<RTCGeometry> made = make_embree_geometry(scene, device.get());
+    const Result<RTCGeometry> made = make_embree_geometry(scene, device.get(), options);
     if (!made) return made.status();
     const Owned<RTCGeometry, GeometryRelease> geometry(*made);
     return rtcAttachGeometry(to, geometry.get());
