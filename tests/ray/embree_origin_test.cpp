@@ -131,7 +131,9 @@ TEST(EmbreeOrigin, SeamsNeitherHitThemselvesNorLeak) {
     EXPECT_EQ(is_occluded_from(body.in(), origin, leaves), expected.kind == HitKind::hit) << k;
     if (expected.kind != HitKind::hit) continue;
     ++hits;
-    same += found.ray.tfar == static_cast<float>(expected.t) && found.hit.primID == expected.patch;
+    // The origin's last digits may differ, and near the origin t has few more.
+    same += std::abs(double{found.ray.tfar} - expected.t) <= 1e-7 * expected.t + 1e-12 &&
+            found.hit.primID == expected.patch;
     plain += trace(body.in(), leaves).ray.tfar == found.ray.tfar;
   }
   EXPECT_GT(hits, 2000u);

@@ -35,6 +35,28 @@ bool lies_between(const kernel::RayRoot& root, const RayLine& line) {
   return s - off > line.near && s + off < line.far;
 }
 
+/// Returns whether the root is surely not the origin that the line leaves. decide_origin() says so, too, without
+/// evaluating the patch, by the distance and the angle: a kernel proves no root at a sine below 1e-7, since float
+/// rounds by more, and the offset is at most 1e-12.
+bool is_far_from_origin(const kernel::RayRoot& root, const RayLine& line) {
+  constexpr double far = 1e-2;
+  if (!(line.spawn > 0)) return true;
+  const double off = static_cast<double>(root.s_error) + line.slack;
+  return line.spawn < 1e-12 && root.s - off > line.s_of_origin() + far;
+}
+
+/// Drops the root that is the point which the line leaves. That point is a root, so it lies where a kernel has proven
+/// exactly one root, or it is none of those in that rectangle.
+void drop_left_point(const Leaf& leaf, const LeftPoint& left, kernel::RayRoots& roots) {
+  constexpr double rounding = 2.4e-7;  // of a place in float, in a piece
+  const double u = (left.u - leaf.u0) / leaf.du - 0.5, v = (left.v - leaf.v0) / leaf.dv - 0.5;
+  const auto is_left = [&](const kernel::RayRoot& root) {
+    return std::abs(double{root.u} - u) <= double{root.radius_u} + rounding &&
+           std::abs(double{root.v} - v) <= double{root.radius_v} + rounding;
+  };
+  roots.count = static_cast<int>(std::remove_if(roots.root, roots.root + roots.count, is_left) - roots.root);
+}
+
 kernel::RayRoot root_of(const kernel::RayPacket& rays, std::size_t lane) {
   return {rays.u[lane], rays.v[lane], rays.s[lane], rays.radius_u[lane], rays.radius_v[lane], rays.s_error[lane]};
 }
@@ -92,6 +114,7 @@ void LeafTracer::search(unsigned leaf_index, kernel::RayProbe& probe, RayQuery& 
   ++query.steps;
   if (query.line.spawn > 0) query.origin = this;
   if (decide(leaf, leaf_index, probe, query)) return;
+  if (query.line.spawn > 0) query.origin = this;
   if (!space.make_ready()) {
     query.overflow = query.incomplete = true;
     return;
@@ -141,7 +164,7 @@ unsigned LeafTracer::decide(unsigned leaf_index, QueryPacket& packet, unsigned l
     RayQuery& query = *packet.queries[lane];
     query.trims = nullptr;
     const auto root = [&] { return root_of(packet.rays, lane); };
-    const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && !(query.line.spawn > 0);
+    const bool has_root = packet.rays.state[lane] == kernel::RayPacket::root && is_far_from_origin(root(), query.line);
     const TrimSide side = has_root && is_cut ? side_of(leaf, root()) : TrimSide::inside;
     if (side == TrimSide::outside) continue;
     const bool any = query.wanted == RootsWanted::any && query.filter == nullptr;
@@ -223,29 +246,55 @@ OriginRoot LeafTracer::decide_root(const RayLine& line, const LeafRoot& root) co
   return decide_origin(*set, borders->found(), nets->frame(), line, root);
 }
 
+bool LeafTracer::has(const LeftPoint& point) const {
+  // Written so that NaN fails.
+  return point.patch < set->patch_count() && point.u >= 0 && point.u <= 1 && point.v >= 0 && point.v <= 1;
+}
+
+Vec3 LeafTracer::at(const LeftPoint& point) const {
+  const FirstOrder found = scene_point(set->patch(point.patch), nets->frame(), *kernels, point.u, point.v);
+  return nets->frame().to_model(found.position);
+}
+
 /// Decides in float, if that proves which roots there are, and then finds these in double.
 bool LeafTracer::decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const {
   const auto trace = leaf.rational ? kernels->trace_rational_leaf : kernels->trace_polynomial_leaf;
   const kernel::RayLeaf& local = nets->local(leaf_index);
   kernel::RayRoots roots;
-  probe.any = query.wanted == RootsWanted::any && !query.decides_each_root();
-  if (!probe.any) fetch_patch(*set, leaf);
+  const bool has_left_point = query.left != nullptr && query.left->patch == leaf.patch;
+  probe.any = query.wanted == RootsWanted::any && query.filter == nullptr && !has_left_point;
+  if (!probe.any && !has_left_point) fetch_patch(*set, leaf);
   if (!trace(local, probe, roots)) return false;
+  if (has_left_point) drop_left_point(leaf, *query.left, roots);
   if (roots.count == 0) return true;
   if (probe.any && !roots.root[0].at_border) {
-    query.found = lies_between(roots.root[0], query.line) &&
-                  (query.trims == nullptr || side_of(leaf, roots.root[0]) == TrimSide::inside);
-    if (query.found) return true;
-    probe.any = false;  // that root is next to an end, or not surely kept, so all are needed
+    if (decide_any(leaf, roots.root[0], query)) return true;
+    probe.any = false;
     if (!trace(local, probe, roots)) return false;
   }
   return take_roots(leaf, roots, query);
+}
+
+/// Takes the one root of a query for any, unless it is next to an end or the origin, or not surely kept: then all are
+/// needed.
+bool LeafTracer::decide_any(const Leaf& leaf, const kernel::RayRoot& root, RayQuery& query) const {
+  query.found = lies_between(root, query.line) && is_far_from_origin(root, query.line) &&
+                (query.trims == nullptr || side_of(leaf, root) == TrimSide::inside);
+  return query.found;
+}
+
+/// Returns the test that a root needs, or null. Where all roots are wanted, all have the same, since they are compared
+/// with each other.
+const OriginTest* LeafTracer::origin_test(const kernel::RayRoot& root, const RayQuery& query) const {
+  if (!(query.line.spawn > 0)) return nullptr;
+  return query.wanted != RootsWanted::all && is_far_from_origin(root, query.line) ? nullptr : this;
 }
 
 /// Takes the roots of one ray. Returns false if rounding leaves something undecided.
 bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const {
   LeafRoot taken[kernel::RayRoots::most];
   TrimSide sides[kernel::RayRoots::most];
+  const OriginTest* tests[kernel::RayRoots::most];
   int count = 0;
   const RootSides* const loops = query.trims;
   for (int k = 0; k < roots.count; ++k) {
@@ -255,6 +304,7 @@ bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, Ray
     const TrimSide side = sides[count] = loops == nullptr ? TrimSide::inside : side_of(leaf, roots.root[k]);
     if (side == TrimSide::outside) continue;
     root.patch = leaf.patch;
+    query.origin = tests[count] = origin_test(roots.root[k], query);
     if (roots.root[k].at_border) {
       const BorderRoot what =
           polish_at_border(patch, nets->frame(), *kernels, query.line, start, tolerance_of(leaf), root);
@@ -268,6 +318,7 @@ bool LeafTracer::take_roots(const Leaf& leaf, const kernel::RayRoots& roots, Ray
   }
   for (int k = 0; k < count; ++k) {
     query.trims = sides[k] == TrimSide::inside ? nullptr : loops;
+    query.origin = tests[k];
     query.take(taken[k]);
   }
   return true;

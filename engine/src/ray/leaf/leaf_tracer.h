@@ -64,6 +64,11 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   /// Does so for the queries of a packet whose bits are set in `lanes`, each as if alone.
   void search(unsigned leaf, QueryPacket& packet, unsigned lanes, SearchSpace& space) const;
 
+  /// Returns whether the patch exists, and (u,v) is in [0,1]^2.
+  bool has(const LeftPoint& point) const;
+  /// Returns a point of a patch, in the model's coordinates.
+  Vec3 at(const LeftPoint& point) const;
+
   /// See spawn_root.h.
   OriginRoot decide_root(const RayLine& line, const LeafRoot& root) const override;
 
@@ -79,6 +84,8 @@ struct LeafTracer final : OriginTest, TracedLeaves {
   unsigned take_each_root(const Leaf& leaf, QueryPacket& packet, const PacketRoots& roots) const;
   bool take_gain(RayQuery& query, LeafRoot& root) const;
   bool decide(const Leaf& leaf, unsigned leaf_index, kernel::RayProbe& probe, RayQuery& query) const;
+  bool decide_any(const Leaf& leaf, const kernel::RayRoot& root, RayQuery& query) const;
+  const OriginTest* origin_test(const kernel::RayRoot& root, const RayQuery& query) const;
   bool take_roots(const Leaf& leaf, const kernel::RayRoots& roots, RayQuery& query) const;
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "ray/leaf/leaf_search.h"
-#include "ray/line/first_order.h"
 #include "ray/net/projected_net.h"
 #include "ray/net/seen_point.h"
 
@@ -15,7 +14,8 @@ using kernel::PolishJob;
 
 Vec3 triple(const double* x) { return {x[0], x[1], x[2]}; }
 
-/// Evaluates in the scene's coordinates.
+}  // namespace
+
 FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, double u,
                        double v) {
   const double* const points = &patch.points().data()->x;
@@ -33,8 +33,6 @@ FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const 
   }
   return {frame.scale * out.position, frame.scale * out.du, frame.scale * out.dv};
 }
-
-}  // namespace
 
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
             const RootStart& start, bool with_gain, LeafRoot& root) {

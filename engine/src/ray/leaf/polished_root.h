@@ -3,6 +3,7 @@
 
 #include "kernel/ray/ray_kernels.h"
 #include "ray/leaf/leaf_nets.h"
+#include "ray/line/first_order.h"
 #include "ray/line/ray_query.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -31,6 +32,10 @@ inline RootStart start_of(const Leaf& leaf, const kernel::RayRoot& proven) {
 /// iterate leaves the ranges of `start`.
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,
             const RootStart& start, bool with_gain, LeafRoot& root);
+
+/// Returns a point of the patch in the scene's coordinates, with its derivatives.
+FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, double u,
+                       double v);
 
 /// The place of a root next to a border.
 enum class BorderRoot : std::uint8_t {

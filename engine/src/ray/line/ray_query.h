@@ -93,6 +93,12 @@ class RootSides {
   ~RootSides() = default;
 };
 
+/// The point of a patch that a ray leaves.
+struct LeftPoint {
+  std::uint32_t patch = 0;
+  double u = 0, v = 0;
+};
+
 struct RayQuery;
 
 /// The caller's filter of roots: see batch_filter.h.
@@ -127,6 +133,7 @@ struct RayQuery {
   double best_t = std::numeric_limits<double>::infinity();  ///< its t
   std::vector<LeafRoot> roots;                              ///< if all are wanted
   const OriginTest* origin = nullptr;                       ///< if the line leaves a surface
+  const LeftPoint* left = nullptr;                          ///< if it is known where the line leaves a surface
   const RootSides* trims = nullptr;                         ///< if loops cut the leaf that is searched
   const RootFilter* filter = nullptr;                       ///< if not all roots count; never if all are wanted
   std::size_t index = 0;                                    ///< index of the ray in the batch, for the filter
@@ -136,9 +143,6 @@ struct RayQuery {
   /// Returns t of a root that was taken. Call it where denormal numbers count.
   double t_of(const LeafRoot& root) const { return std::clamp(line.t_at(root.s), ray.tnear, ray.tfar); }
   bool done() const { return (found && wanted == RootsWanted::any) || overflow || stopped; }
-  /// Returns whether each root must be known to its last digits, one by one. Where loops cut the leaf, so must those
-  /// that are near a loop.
-  bool decides_each_root() const { return origin != nullptr || filter != nullptr; }
   /// Returns whether roots must have gains. Near a loop they must have them, too.
   bool needs_gains() const { return wanted == RootsWanted::all || origin != nullptr; }
 

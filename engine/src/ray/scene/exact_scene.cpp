@@ -69,7 +69,7 @@ class ExactScene final : public PatchScene, private ExactSource {
   RayLine line(const Ray& ray, const Placement& placement) const override {
     return line_of(ray, placement, frame_, scene_box_);
   }
-  bool leave(std::uint32_t k, double u, double v, Ray& r) const noexcept override { return leave_from(k, u, v, r); }
+  double offset() const override { return spawn_offset(); }
   void trace(RayQuery& query) const override;
   void trace(std::span<RayQuery* const> queries) const override;
   void set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const override;

@@ -31,9 +31,8 @@ class ExactSource {
   /// Returns the line of a valid ray in the model's coordinates.
   virtual RayLine line(const Ray& ray) const = 0;
   virtual RayLine line(const Ray& ray, const Placement& placement) const = 0;
-  /// Makes the ray begin at a point of a patch, and leave the surfaces there. Returns false, with the ray unchanged, if
-  /// there is no such point. Call it where denormal numbers count.
-  virtual bool leave(std::uint32_t patch, double u, double v, Ray& ray) const noexcept = 0;
+  /// Returns RayScene::spawn_offset().
+  virtual double offset() const = 0;
   /// Runs the query, whose line must not be empty, inside a FlushDenormals.
   virtual void trace(RayQuery& query) const = 0;
   /// Runs up to a packet of queries for one kind of roots, together if they are coherent.

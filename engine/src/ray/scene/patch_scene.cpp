@@ -31,18 +31,6 @@ Status PatchScene::check_point(std::uint32_t patch, double u, double v) const {
   return {};
 }
 
-bool PatchScene::leave_from(std::uint32_t patch, double u, double v, Ray& ray) const noexcept {
-  // Written so that NaN fails.
-  if (patch >= set_.patch_count() || !(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return false;
-  try {
-    prepare_borders();
-  } catch (...) {  // called from Embree, which cannot handle exceptions
-  }
-  ray.origin = first_order(set_.patch(patch), u, v).position;
-  ray.spawn_offset = spawn_offset();
-  return true;
-}
-
 Result<LocalGeometry> PatchScene::local_geometry(const Hit& hit) const {
   if (Status status = check_point(hit.patch, hit.patch_u, hit.patch_v); !status.ok()) return status;
   return tessera::local_geometry(set_.patch(hit.patch), hit.patch_u, hit.patch_v);

@@ -47,6 +47,15 @@ Ray ray_of(RTCRayN* rays, unsigned count, unsigned k) {
   return ray;
 }
 
+/// Finds the borders that rays from a surface need. If memory runs out, they are traced without.
+void find_borders(const LeafTracer& tracer) noexcept {
+  const CountDenormals count;  // Embree's callers flush them
+  try {
+    (void)tracer.borders->of(*tracer.set);
+  } catch (...) {  // Embree cannot handle exceptions
+  }
+}
+
 /// Accepts the roots behind those that filters of Embree have rejected.
 class RootsBehind final : public RootFilter {
  public:
@@ -73,7 +82,8 @@ class SceneCall {
   /// Finds the nearest root on one of the rays that no filter rejects, as a hit; the ray then ends there.
   bool meet(unsigned k, RTCHit& hit) const {
     Ray ray = ray_of(rays_, arguments_->N, k);
-    if (has_origins_) leave_origin(k, ray);
+    LeftPoint left;
+    const bool leaves = has_origins_ && leave_origin(k, ray, left);
     if (!is_valid(ray)) return false;
     const RayLine line = source_.line(ray);
     if (line.empty) return false;
@@ -81,6 +91,7 @@ class SceneCall {
     for (const RootFilter* filter = nullptr;; filter = &behind) {
       RayQuery query(ray, line, RootsWanted::closest);
       query.filter = filter;
+      if (leaves) query.left = &left;
       trace(query);
       if (!query.found || accept(k, query, hit)) return query.found;
       behind.pass(query);
@@ -88,12 +99,17 @@ class SceneCall {
   }
 
  private:
-  void leave_origin(unsigned k, Ray& ray) const {
+  /// Makes the ray begin at its origin's point. Returns false if it has none here.
+  bool leave_origin(unsigned k, Ray& ray, LeftPoint& left) const {
     const EmbreeContext& context = *arguments_->context;
     const EmbreeOrigin* const origin = origin_of(context, RTCRayN_id(rays_, arguments_->N, k));
-    if (origin == nullptr || !names(*origin, arguments_->geomID, context)) return;
-    const CountDenormals count;  // Embree's callers flush them
-    source_.leave(origin->patch, origin->u, origin->v, ray);
+    if (origin == nullptr || !names(*origin, arguments_->geomID, context)) return false;
+    left = {origin->patch, origin->u, origin->v};
+    const LeafTracer& tracer = source_.tracer();
+    if (!tracer.has(left)) return false;
+    if (tracer.borders->found() == nullptr) find_borders(tracer);
+    ray.origin = tracer.at(left), ray.spawn_offset = source_.offset();
+    return true;
   }
 
   void trace(RayQuery& query) const {

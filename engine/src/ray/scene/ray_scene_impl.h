@@ -96,8 +96,6 @@ class PatchScene : public RayScene::Impl {
   virtual double size() const = 0;  ///< of the set's box
   /// Checks that the patch exists and that (u,v) is in [0,1]^2. Errors: invalid_argument.
   Status check_point(std::uint32_t patch, double u, double v) const;
-  /// See ExactSource::leave().
-  bool leave_from(std::uint32_t patch, double u, double v, Ray& ray) const noexcept;
 
  private:
   SetView set_;
