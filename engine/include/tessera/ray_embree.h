@@ -17,6 +17,8 @@
 
 #include <span>
 
+#include "tessera/execution.h"
+#include "tessera/ray_hit.h"
 #include "tessera/ray_scene.h"
 #include "tessera/status.h"
 
@@ -95,7 +97,7 @@ struct EmbreeGeometryOptions {
 /// functions are in use.
 ///
 /// Hits: t is the float nearest to the root's, in [tnear, tfar]; primID is the patch; (u,v) is the place in the patch,
-/// [0,1]^2; Ng is the unit normal along r_u x r_v, in the object's space. RayScene::resolve() returns the rest.
+/// [0,1]^2; Ng is the unit normal along r_u x r_v, in the object's space. resolve() returns the rest.
 ///
 /// Rays: single rays and packets. Each ray is traced in double as it stands in the object's space, in the ray scene's
 /// own tree. The guarantees of exact mode hold for that ray, which Embree has transformed in float where the geometry
@@ -110,6 +112,11 @@ struct EmbreeGeometryOptions {
 /// Filters: those of the geometry and of the context (in Embree 4 of the arguments) get each root of the scene, from
 /// the nearest on, until one is accepted. A root at the border of two patches, or of two pieces of one, may come once
 /// for each.
+///
+/// Motion: patches stand still. With several time steps (rtcSetGeometryTimeStepCount) they are the same at each, and a
+/// ray's time makes no difference. A whole scene moves as an instance, whose transforms Embree interpolates.
+///
+/// Point queries: rtcPointQuery() finds nothing here, without an error, since the geometry has no function for them.
 ///
 /// Errors: invalid_argument (no device), unsupported (grid mode; a box that reaches beyond 1.844e18, or with a diagonal
 /// below 1e-15: Embree computes in float), stale, internal (Embree's own, which go to the device's error function).
@@ -127,6 +134,18 @@ Status update_embree_geometry(const RayScene& scene, RTCGeometry geometry);
 /// Makes the geometry for the device of the scene `to`, attaches it and returns its id. The caller commits the scene.
 /// Errors: as make_embree_geometry().
 Result<unsigned> attach(const RayScene& scene, RTCScene to, const EmbreeGeometryOptions& options = {});
+
+/// Completes hits of Embree: hits[k] is the point of from[k] on its patch, in double, in the scene's own coordinates.
+///
+/// `geometry` is the id of the scene's geometry. hits.size() >= from.size(). A miss and a hit of another geometry
+/// become a miss. The numbers are those of RayScene::resolve() for a point; t is that of Embree's ray, and
+/// Hit::instance is RTCHit::instID of the innermost instance.
+///
+/// Errors, with nothing written: buffer_too_small, stale. Errors with the other hits written, index = the first such
+/// hit: invalid_argument (no such patch or point), non_finite (the point), unsupported (a scene of instances). Errors
+/// with some written: cancelled, out_of_memory. Threads: const; runs in the caller's arena.
+Status resolve(const RayScene& scene, unsigned geometry, std::span<const RTCRayHit> from, std::span<Hit> hits,
+               const Execution& execution = {});
 
 }}  // namespace tessera::abi_0_1
 #pragma GCC visibility pop
