@@ -209,6 +209,7 @@ void run(benchmark::State& state, const Scenes& scenes, bool closest_wanted, int
   state.counters["of_two_scenes"] = *best / by_merging_time.best();
 }
 
+/// The size in a case's name is that of the camera's rays; those that hit patches leave them.
 [[maybe_unused]] const bool registered = [] {
   for (const int threads : {1, 2}) {
     for (const bool closest_wanted : {true, false}) {

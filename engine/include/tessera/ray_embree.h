@@ -59,6 +59,8 @@ using EmbreeQueryContext = RTCIntersectContext;
 /// - One origin is that of all rays of the call. Of several, RTCRay::id is the index; other ids have no origin.
 /// - An origin that names no geometry, no patch of it, or parameters that are NaN or outside of [0,1] is ignored: the
 ///   ray is then one that leaves no patch. RayScene::resolve() returns an error for such numbers.
+/// - The offset is RayScene::spawn_offset(), without the gap of an edge. So a ray that leaves a face at an edge of a
+///   shape may meet another face beyond the edge's gap (RayScene::edge_gaps()).
 /// - Plain contexts of Embree are never taken for this one. In Embree 3 a mark in RTCIntersectContext::flags tells
 ///   them apart, which only set_coherent() keeps. In Embree 4 EmbreeGeometryOptions::origins does.
 ///
