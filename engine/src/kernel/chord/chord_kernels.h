@@ -17,6 +17,7 @@ struct ChordJob {
   float* unit = nullptr;    ///< `[lane]`: a power of two above the largest coefficient
   float* size = nullptr;    ///< `[lane]`: the largest coordinate of a control point, at least 2^-120
   float* hints = nullptr;   ///< `[lane]`: a sum of ChordHint; or null
+  bool is_plane = false;    ///< rational patches without hints: all z are 0
 };
 
 /// Kinds that a patch may be of, judging by its corners, where that would save cells.

@@ -10,7 +10,7 @@ template <class L>
 class RationalChords {
  public:
   RationalChords(const ChordJob& job, int lane)
-      : job_(job), lane_(lane), nets_(job.net, job.degree_u, job.degree_v, lane) {}
+      : job_(job), lane_(lane), nets_(job.net, job.degree_u, job.degree_v, lane, job.is_plane ? 2 : 3) {}
 
   void run() {
     nets_.place(inverse_unit<L>(job_, lane_, nets_.largest()));
@@ -54,7 +54,7 @@ class RationalChords {
     const auto shape = nets_.second_differences(kind, d_[0], Nets::capacity * Nets::capacity);
     Batch pieces[9];
     for (Batch& piece : pieces) piece = L::broadcast(0);
-    if (shape.count() > 0) largest(shape, pieces);
+    if (shape.count() > 0) job_.is_plane ? largest<true>(shape, pieces) : largest<false>(shape, pieces);
     const Batch by = L::broadcast(static_cast<float>(factor));
     for (int k = 0; k < 9; ++k) L::store(job_.pieces + (k * 3 + kind) * block_lanes + lane_, pieces[k] * by);
     sum_ = sum_ + pieces[0] * by;
@@ -62,8 +62,10 @@ class RationalChords {
   }
   Batch unsure(const Part& part) const { return L::broadcast(nets_.slack) + part.radius * L::broadcast(nets_.slope); }
 
+  template <bool IsPlane>
   void largest(typename Nets::Shape shape, Batch (&pieces)[9]) {
-    for (int c = 0; c < 4; ++c) Nets::cut(d_[c], shape, true, true, cut_[c]);
+    for (const int c : {0, 1, 2, 3})
+      if (c != 2 || !IsPlane) Nets::cut(d_[c], shape, true, true, cut_[c]);
     for (int quarter = 0; quarter < 4; ++quarter) {
       const int half_u = quarter / 2, half_v = quarter % 2;
       const int first = half_u * (shape.rows - 1) * Nets::max_cut + half_v * (shape.columns - 1);
@@ -73,9 +75,13 @@ class RationalChords {
         for (int i = 0; i < shape.rows; ++i)
           for (int j = 0; j < shape.columns; ++j) {
             const int at = first + i * Nets::max_cut + j;
-            const Batch w = cut_[3][at], x = cut_[0][at] - part.centre[0] * w, y = cut_[1][at] - part.centre[1] * w,
-                        z = cut_[2][at] - part.centre[2] * w;
-            most = xsimd::max(most, Nets::root(x * x + y * y + z * z) + part.radius * xsimd::abs(w));
+            const Batch w = cut_[3][at], x = cut_[0][at] - part.centre[0] * w, y = cut_[1][at] - part.centre[1] * w;
+            Batch squared = x * x + y * y;
+            if constexpr (!IsPlane) {
+              const Batch z = cut_[2][at] - part.centre[2] * w;
+              squared = squared + z * z;
+            }
+            most = xsimd::max(most, Nets::root(squared) + part.radius * xsimd::abs(w));
           }
         pieces[k] = xsimd::max(pieces[k], L::broadcast(Nets::more) * (most + unsure(part)) * part.inverse);
       }

@@ -30,14 +30,16 @@ class RationalNets {
     Batch lower[3], upper[3], centre[3], radius, lightest, inverse;
   };
 
-  const int m, n;
+  const int m, n, dimensions;
   const float slack, slope;  ///< errors of A'' - c w'' and of w''
   Batch size;                ///< the largest coordinate of a point, at least 2^-120
   Part parts[9];             ///< the whole, the halves of u, the halves of v, the quarters
 
-  RationalNets(const float* block, int degree_u, int degree_v, int lane)
+  /// `space`: 3, or 2 where all z are 0; parts have none then.
+  RationalNets(const float* block, int degree_u, int degree_v, int lane, int space = 3)
       : m(degree_u),
         n(degree_v),
+        dimensions(space),
         slack(static_cast<float>(1.7321 * 0x1p-24) * static_cast<float>(68 + 12 * (m + n))),
         slope(static_cast<float>(0x1p-24) * static_cast<float>(8 + 2 * (m + n))) {
     coefficient_ = L::broadcast(static_cast<float>(0x1p-120));
@@ -45,7 +47,7 @@ class RationalNets {
       const float* const from = block + k * 4 * block_lanes + lane;
       net_[3][k] = L::load(from + 3 * block_lanes);
       const Batch inverse = L::broadcast(1) / net_[3][k];
-      for (int c = 0; c < 3; ++c) {
+      for (int c = 0; c < dimensions; ++c) {
         net_[c][k] = L::load(from + c * block_lanes);
         const Batch point = net_[c][k] * inverse;
         lower_[c] = k == 0 ? point : xsimd::min(lower_[c], point);
@@ -54,7 +56,8 @@ class RationalNets {
       }
     }
     size = L::broadcast(static_cast<float>(0x1p-120));
-    for (int c = 0; c < 3; ++c) size = xsimd::max(size, xsimd::max(xsimd::abs(lower_[c]), xsimd::abs(upper_[c])));
+    for (int c = 0; c < dimensions; ++c)
+      size = xsimd::max(size, xsimd::max(xsimd::abs(lower_[c]), xsimd::abs(upper_[c])));
   }
   RationalNets(const RationalNets&) = delete;
   RationalNets& operator=(const RationalNets&) = delete;
@@ -64,7 +67,7 @@ class RationalNets {
   /// Makes coefficients relative to the middle of the points' box and finds the parts. Call it once, with the inverse
   /// of the unit, a power of two above largest().
   void place(const Batch& scale) {
-    for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < dimensions; ++c) {
       const Batch middle = L::broadcast(half) * (scale * lower_[c]) + L::broadcast(half) * (scale * upper_[c]);
       for (int k = 0; k < (m + 1) * (n + 1); ++k) net_[c][k] = scale * net_[c][k] - net_[3][k] * middle;
     }
@@ -118,6 +121,7 @@ class RationalNets {
     const int along_u = kind == 0 ? 2 : kind == 1 ? 1 : 0, along_v = 2 - along_u;
     const Shape shape{m + 1 - along_u, n + 1 - along_v};
     for (int c = 0; c < 4; ++c) {
+      if (c == 2 && dimensions == 2) continue;
       const auto at = [&](int i, int j) -> const Batch& { return net_[c][i * (n + 1) + j]; };
       for (int i = 0, next = c * step; i < shape.rows; ++i)
         for (int j = 0; j < shape.columns; ++j, ++next)
@@ -157,23 +161,24 @@ class RationalNets {
  private:
   void find_parts() {
     Batch cuts[4][max_cut * max_cut];
-    for (int c = 0; c < 4; ++c) cut(net_[c], {m + 1, n + 1}, true, true, cuts[c]);
+    for (const int c : {0, 1, 2, 3})
+      if (c != 2 || dimensions == 3) cut(net_[c], {m + 1, n + 1}, true, true, cuts[c]);
     for (int i = 0; i <= 2 * m; ++i)
       for (int j = 0; j <= 2 * n; ++j) {
         const int k = i * max_cut + j;
         const Batch inverse = L::broadcast(1) / cuts[3][k];
-        for (int c = 0; c < 3; ++c) cuts[c][k] = cuts[c][k] * inverse;
+        for (int c = 0; c < dimensions; ++c) cuts[c][k] = cuts[c][k] * inverse;
       }
     for (int quarter = 0; quarter < 4; ++quarter) {
       const int first = quarter / 2 * m * max_cut + quarter % 2 * n;
       Part& part = parts[5 + quarter];
       part.lightest = cuts[3][first];
-      for (int c = 0; c < 3; ++c) part.lower[c] = part.upper[c] = cuts[c][first];
+      for (int c = 0; c < dimensions; ++c) part.lower[c] = part.upper[c] = cuts[c][first];
       for (int i = 0; i <= m; ++i)
         for (int j = 0; j <= n; ++j) {
           const int k = first + i * max_cut + j;
           part.lightest = xsimd::min(part.lightest, cuts[3][k]);
-          for (int c = 0; c < 3; ++c) {
+          for (int c = 0; c < dimensions; ++c) {
             part.lower[c] = xsimd::min(part.lower[c], cuts[c][k]);
             part.upper[c] = xsimd::max(part.upper[c], cuts[c][k]);
           }
@@ -190,7 +195,7 @@ class RationalNets {
       part.lightest = part.lightest - L::broadcast(weight);
       part.inverse = L::broadcast(more) / part.lightest;
       Batch squared = L::broadcast(0);
-      for (int c = 0; c < 3; ++c) {
+      for (int c = 0; c < dimensions; ++c) {
         part.centre[c] = L::broadcast(half) * (part.lower[c] + part.upper[c]);
         const Batch reach = xsimd::max(part.upper[c] - part.centre[c], part.centre[c] - part.lower[c]);
         squared = squared + reach * reach;
@@ -199,7 +204,7 @@ class RationalNets {
     }
   }
   void join(int to, int a, int b) {
-    for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < dimensions; ++c) {
       parts[to].lower[c] = xsimd::min(parts[a].lower[c], parts[b].lower[c]);
       parts[to].upper[c] = xsimd::max(parts[a].upper[c], parts[b].upper[c]);
     }

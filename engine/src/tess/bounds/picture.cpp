@@ -166,7 +166,8 @@ class PictureBlock {
                                                      .degree_v = degree_v_,
                                                      .pieces = pieces_.data(),
                                                      .unit = unit_.data(),
-                                                     .size = size_.data()});
+                                                     .size = size_.data(),
+                                                     .is_plane = true});
   }
   ChordBound::PlainPieces pieces(std::size_t lane) const {
     ChordBound::PlainPieces pieces;
