@@ -5,14 +5,35 @@ from __future__ import annotations
 import ctypes
 import math
 import operator
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ._library import In, Out
-from .errors import ArgumentError, ArgumentTypeError
+from .errors import ArgumentError, ArgumentTypeError, MissingError
 
 _NoBytes = ctypes.c_char * 0
+
+
+class NamedArrays:
+    """Arrays by the names of quantities. Those that were not asked for raise MissingError."""
+
+    _known: ClassVar[Mapping[str, Any]]
+
+    def __init__(self, **arrays: np.ndarray) -> None:
+        unknown = arrays.keys() - self._known.keys()
+        if unknown:
+            raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(self._known)}")
+        self.__dict__.update(arrays)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> np.ndarray:
+            if name in self._known:
+                found = ", ".join(self.__dict__) or "none"
+                raise MissingError(f"{name} was not asked for: name it in quantities=[...]; there are {found}")
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
 
 def array_of(name: str, value: Any, dtype: Any = np.float64) -> np.ndarray:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ._arrays import array_of, check_out, in_view, integer_of, names_of, out_view, records_of
+from ._arrays import NamedArrays, array_of, check_out, in_view, integer_of, names_of, out_view, records_of
 from ._calls import Handle, run
 from ._library import library, struct
-from .errors import ArgumentError, MissingError
+from .errors import ArgumentError
 
 #: The quantities and their components.
 QUANTITIES = {
@@ -39,7 +39,7 @@ _ORDERS = (
 _LONG = 20_000  # points, below which a call is over at once
 
 
-class Jets:
+class Jets(NamedArrays):
     """The output of an evaluation: one array per quantity, of shape (..., 3) or (...). The array of a quantity that was
     not asked for is a MissingError; ``quantities`` lists those that are there.
 
@@ -48,6 +48,8 @@ class Jets:
     their unit tangents ``first_direction``, ``second_direction``. Made of arrays of the caller, it is where to write
     to: ``Jets(position=array)``.
     """
+
+    _known = QUANTITIES
 
     position: np.ndarray
     du: np.ndarray
@@ -64,20 +66,6 @@ class Jets:
     second_curvature: np.ndarray
     first_direction: np.ndarray
     second_direction: np.ndarray
-
-    def __init__(self, **arrays: np.ndarray) -> None:
-        unknown = arrays.keys() - QUANTITIES.keys()
-        if unknown:
-            raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
-        self.__dict__.update(arrays)
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> np.ndarray:
-            if name in QUANTITIES:
-                found = ", ".join(self.__dict__) or "none"
-                raise MissingError(f"{name} was not asked for: name it in quantities=[...]; there are {found}")
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @property
     def quantities(self) -> list[str]:

@@ -14,12 +14,12 @@ from ._arrays import index_of, positive_of
 from ._calls import Handle, call
 from ._library import library, struct
 from .jets import Jets, evaluate_surface
-from .meshes import Mesh, warn_of_rounding
+from .meshes import Mesh, mesh_for_view, warn_of_rounding
 from .patches import PatchSetBase
 from .rays import SceneBase
 from .splines import CheckedSpline, Spline
 from .surfaces import SurfaceBase, spline_of_patches
-from .view import Shown
+from .view import Shown, view_of
 
 _UNIT, _WARNING, _SURFACE, _KIND, _SHAPE, _INSTANCE = range(6)
 
@@ -35,7 +35,7 @@ class Instance:
     first_surface: int
 
 
-class Surface(SurfaceBase):
+class Surface(SurfaceBase, Shown):
     """A surface of a model: ``name``, ``kind``, ``domain`` [[u0, u1], [v0, v1]], ``loops``, the number of trimming
     loops, and ``degree``, ``knots``, ``points``, ``weights`` of the spline that it is, whose arrays are read-only.
 
@@ -81,6 +81,14 @@ class Surface(SurfaceBase):
         ((5, 3, 3), (5, 3))
         """
         return evaluate_surface(self.model._points(), len(self.model), self.index, u, v, derivatives, quantities, out)
+
+    def _view(self) -> tuple[str, bytes]:
+        patches = self.model.patches()
+        mesh = mesh_for_view(patches)
+        of_surface = [k for k in np.unique(mesh.patches) if patches[int(k)].surface == self.index]
+        faces = mesh.faces[np.isin(mesh.patches, of_surface)]
+        used, numbers = np.unique(faces, return_inverse=True)
+        return view_of(repr(self), mesh.vertices[used].astype(float), numbers.reshape(-1, 3), mesh.normals[used])
 
     def __repr__(self) -> str:
         (u0, u1), (v0, v1) = self.domain
@@ -287,7 +295,7 @@ def _unpickled(model: Model, options: tuple[Any, ...], edited: list[int], points
     return patches
 
 
-class Scene(SceneBase):
+class Scene(SceneBase, Shown):
     """Patches prepared for rays: origin + t * direction. Directions need no unit length. Arrays of shape (..., 3)
     broadcast, and so do ``tnear`` (0), ``tfar`` (infinity) and ``spawn_offset``: how far from the origin surfaces do
     not count.
@@ -306,11 +314,14 @@ class Scene(SceneBase):
     def __repr__(self) -> str:
         return f"<Scene of {self.patches!r}, {self._info().memory_bytes / 2**20:.1f} MiB>"
 
+    def _view(self) -> tuple[str, bytes]:
+        return mesh_for_view(self.patches)._view_as(repr(self))
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Scene, (self.patches, *self._options)
 
 
-class Assembly:
+class Assembly(Shown):
     """A mesh per shape and the places of the shapes; of a model without shapes one mesh, and no places.
 
     >>> import tessera as ts
@@ -348,6 +359,21 @@ class Assembly:
             if len(positions):
                 largest = max(largest, np.abs(positions @ placed[:3, :3].T + placed[:3, 3]).max())
         return largest
+
+    def _view(self) -> tuple[str, bytes]:
+        vertices, faces, normals = [], [], []
+        first = 0
+        for shape, placed in [(each.shape, each.placement) for each in self.instances] or [(0, np.eye(4))]:
+            mesh, turn = self.meshes[shape], placed[:3, :3]
+            positions, corners = mesh.positions() @ turn.T + placed[:3, 3], mesh.triangles()
+            vertices.append(positions)
+            faces.append(first + (corners if np.linalg.det(turn) > 0 else corners[:, ::-1]))
+            if mesh.has_normals:
+                of_shape = mesh.normals @ np.linalg.inv(turn)
+                normals.append(of_shape / np.maximum(np.linalg.norm(of_shape, axis=1, keepdims=True), 1e-30))
+            first += len(positions)
+        shading = np.concatenate(normals) if len(normals) == len(vertices) else None
+        return view_of(repr(self), np.concatenate(vertices), np.concatenate(faces), shading)
 
     def __repr__(self) -> str:
         triangles = sum(len(mesh.faces) for mesh in self.meshes)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ._arrays import (
+    NamedArrays,
     address_of,
     array_of,
     check_out,
@@ -22,7 +23,7 @@ from ._arrays import (
 )
 from ._calls import Handle, call, run
 from ._library import library, struct
-from .errors import ArgumentError, MissingError
+from .errors import ArgumentError
 
 _BYTE, _INDEX, _DOUBLE = np.dtype(np.uint8), np.dtype(np.uint32), np.dtype(np.float64)
 #: The quantities of a hit: components and type.
@@ -46,7 +47,7 @@ _LONG = 5_000  # rays, below which a call is over at once
 MISS, HIT, INVALID_RAY = range(3)
 
 
-class Hits:
+class Hits(NamedArrays):
     """The hits of rays, an array per quantity. A miss has t = inf, indices of 0xffffffff and 0 elsewhere.
 
     ``kind``: MISS, HIT or INVALID_RAY; ``flags``: bits of TSR_HIT_* in tessera_c.h; ``surface``, ``patch``; ``t``;
@@ -55,6 +56,8 @@ class Hits:
     MissingError.
     Made of arrays of the caller, it is where to write to: ``Hits(t=array)``.
     """
+
+    _known = QUANTITIES
 
     kind: np.ndarray
     flags: np.ndarray
@@ -68,20 +71,6 @@ class Hits:
     du: np.ndarray
     dv: np.ndarray
     residual: np.ndarray
-
-    def __init__(self, **arrays: np.ndarray) -> None:
-        unknown = arrays.keys() - QUANTITIES.keys()
-        if unknown:
-            raise ArgumentError(f"{sorted(unknown)[0]!r} is no quantity; there are {', '.join(QUANTITIES)}")
-        self.__dict__.update(arrays)
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> np.ndarray:
-            if name in QUANTITIES:
-                found = ", ".join(self.__dict__) or "none"
-                raise MissingError(f"{name} was not asked for: name it in quantities=[...]; there are {found}")
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @classmethod
     def empty(cls, shape: int | tuple[int, ...], quantities: Sequence[str] | None = None) -> Hits:

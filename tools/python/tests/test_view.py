@@ -41,6 +41,22 @@ def test_a_view_holds_the_mesh(goblet):
     assert "Mesh " in page and "http" not in page and "@" not in page.split("<script>")[0]
 
 
+def faces_in(shown):
+    """The triangles of a view and its picture, which is no blank."""
+    _, data = data_of(shown._repr_html_())
+    assert len(shown._repr_png_()) > 1200
+    return data["count"] // 3
+
+
+def test_surfaces_scenes_and_assemblies_are_shown(goblet):
+    wide = ts.model(ts.Spline(wavy(1, 1)[0]), ts.Spline(wavy(1, 1)[0] + [5, 0, 0]))
+    both = faces_in(wide)
+    assert 0 < faces_in(wide[0]) < both and faces_in(wide[0]) + faces_in(wide[1]) == both
+    assert faces_in(goblet.patches().rays()) == faces_in(goblet)
+    assembly = goblet.tessellate(tolerance=1e-2)
+    assert faces_in(assembly) == len(assembly.meshes[0].faces)
+
+
 def test_fifty_thousand_triangles_take_two_megabytes_at_most(goblet):
     patches = goblet.patches()
     mesh = patches.tessellate(max_triangles=50_000)
