@@ -175,6 +175,7 @@ TEST(PartMesh, TellsWhatItCannotDo) {
   for (const TessellationOptions& options : {TessellationOptions{.tolerance = 0.1, .joining = {.share_vertices = true}},
                                              {.tolerance = 0.1, .joining = {.crease_angle = 0.1}},
                                              {.budget = 1000},
+                                             {.surface_tolerances = {0.1}},
                                              {.tolerance = 0.1, .fewest = true}})
     EXPECT_EQ(tessellate_part(part, options).status().code(), StatusCode::unsupported);
   EXPECT_EQ(tessellate_part(part, {.tolerance = -1}).status().code(), StatusCode::invalid_argument);

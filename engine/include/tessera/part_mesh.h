@@ -76,7 +76,8 @@ struct PartMesh {
 /// Meshes the wanted surfaces of a part, without other parts' help. A part without patches has an empty mesh.
 ///
 /// Errors: those of make_patch_set() and Tessellation::make() (index = the surface or patch, counted from the first of
-/// `part`); unsupported (share_vertices, a crease angle, a budget or `fewest`: these decide for the whole mesh).
+/// `part`); unsupported (share_vertices, a crease angle, a budget, surface_tolerances or `fewest`: these decide for the
+/// whole mesh).
 Result<PartMesh> tessellate_part(const ModelPart& part, const TessellationOptions& options,
                                  const Execution& execution = {}, const FitOptions& fit = {});
 

@@ -20,6 +20,7 @@ Status check_local(const TessellationOptions& options) {
   if (options.joining.share_vertices) return refused("share_vertices");
   if (options.joining.crease_angle) return refused("a crease angle");
   if (options.budget) return refused("a budget of triangles");
+  if (!options.surface_tolerances.empty()) return refused("a list of surfaces' tolerances");
   if (options.fewest) return refused("a search for the fewest triangles");
   return {};
 }
