@@ -28,8 +28,8 @@ namespace tessera { inline namespace abi_0_1 {
 /// perpendicular to the other derivative, or else any vector perpendicular to the normal; where the normal is zero, so
 /// is the tangent.
 ///
-/// Errors: invalid_argument (a mesh without parameters, normals or patches; index = the vertex: parameters outside of
-/// its patch; index = the face: no such patch), count_mismatch, cancelled, out_of_memory.
+/// Errors: invalid_argument (a mesh without parameters or normals; index = the vertex: parameters outside of its patch;
+/// index = the face: no such patch), count_mismatch (not one patch per face), cancelled, out_of_memory.
 Result<std::vector<float>> tangents(const Mesh& mesh, const PatchSet& set, VertexParameters parameters,
                                     const Execution& execution = {});
 
@@ -43,8 +43,8 @@ Result<std::vector<std::uint16_t>> short_indices(const Mesh& mesh);
 /// - `cache_size`: 3 to 1024.
 ///
 /// Errors, with the mesh unchanged: invalid_argument (the cache size; index = the triangle: a vertex out of range;
-/// parts that overlap), count_mismatch (patches), out_of_memory. Time: linear. Memory: 60 bytes per triangle while it
-/// runs.
+/// index = the part: one that does not begin where the one before ends), count_mismatch (patches; parts that are not
+/// all triangles), out_of_memory. Time: linear.
 ///
 /// Source: Sander, Nehab and Barczak 2007, Fast triangle reordering for vertex locality and reduced overdraw.
 Status order_for_vertex_cache(Mesh& mesh, int cache_size = 16);
@@ -56,7 +56,7 @@ struct MeshRange {
   std::size_t first_quad = 0, quad_count = 0;          ///< a run of the mesh's quads
   /// The vertices from the lowest to the highest that these faces have. Ranges overlap where surfaces share vertices.
   std::size_t first_vertex = 0, vertex_count = 0;
-  Box3 box;          ///< of these faces' vertices, in the model; the surface lies within `bound` of it
+  Box3 box;          ///< of these faces' vertices, in the model
   double bound = 0;  ///< the largest of the patches' bounds, infinite if one has none
 };
 
@@ -65,20 +65,20 @@ struct MeshRange {
 /// - `mesh`: with patches, which are those of `set`.
 /// - `bounds`: Tessellation::bounds(), or empty for a mesh without: all bounds are infinite then.
 ///
-/// Errors: invalid_argument (a mesh without patches; index = the face: no such patch, a vertex out of range),
-/// count_mismatch (bounds).
+/// Errors: invalid_argument (index = the face: no such patch, a vertex out of range), count_mismatch (not one patch per
+/// face; bounds).
 Result<std::vector<MeshRange>> surface_ranges(const Mesh& mesh, const PatchSet& set, std::span<const float> bounds);
 
 /// Some triangles of a mesh that lie together, for culling and for mesh shaders.
 struct MeshCluster {
   std::uint32_t first_triangle = 0, triangle_count = 0;  ///< places in MeshClusters::triangles
   std::uint32_t first_vertex = 0, vertex_count = 0;      ///< places in MeshClusters::vertices
-  Box3 box;   ///< of its vertices, in the model; the surface there lies within `bound` of it
-  Vec3 axis;  ///< the unit vector that the triangles' normals lie around
+  Box3 box;                                              ///< of its vertices, in the model
+  Vec3 axis;                                             ///< the unit vector that the triangles' normals lie around
   /// The normals lie within so many radians of `axis`; pi if they go all ways. Seen from the eye e, all triangles face
   /// away if the angle from `axis` to p - e is below pi / 2 - spread for every p of the box.
   double spread = 0;
-  double bound = 0;  ///< the proven distance of its triangles' patches, infinite if one has none
+  double bound = 0;  ///< its triangles lie within this of their patches, proven; infinite if one has no bound
 };
 
 /// The clusters of a mesh: each triangle is in one.

@@ -2,9 +2,12 @@
 // the cache (Sander, Nehab and Barczak 2007, Fast triangle reordering for vertex locality and reduced overdraw).
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
-#include "tess/gpu/mesh_faces.h"
+#include "base/text.h"
+#include "tess/cells/mesh_faces.h"
+#include "tess/mesh/mesh_parts.h"
 #include "tessera/gpu_mesh.h"
 #include "tessera/guard.h"
 
@@ -102,27 +105,21 @@ Status order_for_vertex_cache(Mesh& mesh, int cache_size) {
     if (cache_size < 3 || cache_size > 1024)
       return {StatusCode::invalid_argument,
               "the cache holds " + std::to_string(cache_size) + " vertices, it must be from 3 to 1024"};
-    if (Status status = check_corners("triangle", mesh.indices, 3, mesh.vertex_count()); !status.ok()) return status;
+    if (Status status = check_face_corners("triangle", mesh.indices, 3, mesh.vertex_count()); !status.ok())
+      return status;
     const std::size_t count = mesh.triangle_count();
     if (!mesh.patches.empty() && mesh.patches.size() != count)
-      return {StatusCode::count_mismatch, "the mesh has not one patch for each triangle"};
-    for (const MeshPart& part : mesh.parts)
-      if (part.first_triangle > count || part.triangle_count > count - part.first_triangle)
-        return {StatusCode::invalid_argument, "a part of the mesh has triangles that it lacks"};
+      return {StatusCode::count_mismatch,
+              counted(mesh.patches.size(), "patch", "patches") + " for " + counted(count, "triangle")};
+    if (Status status = check_parts(mesh); !status.ok()) return status;
     FanOrder fans(mesh, cache_size);
     std::vector<std::uint32_t> order;
     const auto add = [&](std::size_t begin, std::size_t end) {
       const std::vector<std::uint32_t> of = fans.run(begin, end);
       order.insert(order.end(), of.begin(), of.end());
     };
-    // Parts are runs one after the other; what lies between them stays there.
-    for (const MeshPart& part : mesh.parts) {
-      if (part.first_triangle < order.size())
-        return {StatusCode::invalid_argument, "parts of the mesh overlap, or are not in order"};
-      add(order.size(), part.first_triangle);
-      add(part.first_triangle, part.first_triangle + part.triangle_count);
-    }
-    add(order.size(), count);
+    for (const MeshPart& part : mesh.parts) add(part.first_triangle, part.first_triangle + part.triangle_count);
+    if (mesh.parts.empty()) add(0, count);
     std::vector<std::uint32_t> indices(mesh.indices.size()), patches(mesh.patches.size());
     for (std::size_t k = 0; k < count; ++k) {
       std::copy_n(mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * order[k]), 3,

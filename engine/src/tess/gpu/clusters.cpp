@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "tess/gpu/mesh_faces.h"
+#include "tess/cells/mesh_faces.h"
 #include "tessera/gpu_mesh.h"
 #include "tessera/guard.h"
 
@@ -153,14 +153,8 @@ Result<MeshClusters> make_clusters(const Mesh& mesh, std::span<const float> boun
     };
     Status status = check("max_triangles", options.max_triangles, 1, max_cluster_triangles);
     if (status.ok()) status = check("max_vertices", options.max_vertices, 3, max_cluster_vertices);
-    if (status.ok()) status = check_corners("triangle", mesh.indices, 3, mesh.vertex_count());
-    if (status.ok() && !bounds.empty()) {
-      if (mesh.patches.size() != mesh.triangle_count())
-        status = {StatusCode::count_mismatch,
-                  "bounds are those of patches, and the mesh has not one for each triangle"};
-      else
-        status = check_patches(mesh, bounds.size());
-    }
+    if (status.ok()) status = check_face_corners("triangle", mesh.indices, 3, mesh.vertex_count());
+    if (status.ok() && !bounds.empty()) status = check_face_patches(mesh, bounds.size());
     if (!status.ok()) return status;
     ClusterMaker maker(mesh, bounds, options, execution);
     if (mesh.triangle_count() > 0) status = maker.divide(0, mesh.triangle_count());

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "tess/gpu/mesh_faces.h"
+#include "tess/cells/mesh_faces.h"
 #include "tessera/gpu_mesh.h"
 #include "tessera/guard.h"
 
@@ -60,21 +60,18 @@ class RangeList {
 
 Result<std::vector<MeshRange>> surface_ranges(const Mesh& mesh, const PatchSet& set, std::span<const float> bounds) {
   return guarded([&]() -> Result<std::vector<MeshRange>> {
-    if (Status status = check_patches(mesh, set.patch_count()); !status.ok()) return status;
+    if (Status status = check_face_patches(mesh, set.patch_count()); !status.ok()) return status;
     if (!bounds.empty() && bounds.size() != set.patch_count())
       return Status(StatusCode::count_mismatch,
                     counted(bounds.size(), "bound") + " for " + counted(set.patch_count(), "patch", "patches"));
-    if (Status status = check_corners("triangle", mesh.indices, 3, mesh.vertex_count()); !status.ok()) return status;
-    if (Status status = check_corners("quad", mesh.quads, 4, mesh.vertex_count()); !status.ok()) return status;
+    if (Status status = check_face_corners("triangle", mesh.indices, 3, mesh.vertex_count()); !status.ok())
+      return status;
+    if (Status status = check_face_corners("quad", mesh.quads, 4, mesh.vertex_count()); !status.ok()) return status;
     RangeList ranges(mesh, set, bounds);
-    // Faces in the order of their patches, as parts_by_surface() counts them.
-    std::size_t t = 0, q = 0;
-    while (t < mesh.patches.size() || q < mesh.quad_patches.size()) {
-      const bool is_quad =
-          t == mesh.patches.size() || (q < mesh.quad_patches.size() && mesh.quad_patches[q] < mesh.patches[t]);
-      ranges.add(is_quad ? mesh.quad_patches[q] : mesh.patches[t], is_quad, t, q);
-      ++(is_quad ? q : t);
-    }
+    (void)for_faces_by_patch(mesh, [&](std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
+      ranges.add(patch, is_quad, t, q);
+      return Status();
+    });
     return std::move(ranges).take();
   });
 }
@@ -85,7 +82,8 @@ Result<std::vector<std::uint16_t>> short_indices(const Mesh& mesh) {
     if (mesh.vertex_count() > most)
       return Status(StatusCode::unsupported, "the mesh has " + counted(mesh.vertex_count(), "vertex", "vertices") +
                                                  ", indices of 16 bits have room for " + std::to_string(most));
-    if (Status status = check_corners("triangle", mesh.indices, 3, mesh.vertex_count()); !status.ok()) return status;
+    if (Status status = check_face_corners("triangle", mesh.indices, 3, mesh.vertex_count()); !status.ok())
+      return status;
     std::vector<std::uint16_t> indices(mesh.indices.size());
     std::ranges::transform(mesh.indices, indices.begin(),
                            [](std::uint32_t k) { return static_cast<std::uint16_t>(k); });

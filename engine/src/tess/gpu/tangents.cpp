@@ -6,18 +6,14 @@
 
 #include "base/impl_access.h"
 #include "base/text.h"
+#include "tess/cells/mesh_faces.h"
 #include "tess/cells/parameter_map.h"
-#include "tess/gpu/mesh_faces.h"
 #include "tessera/evaluate.h"
 #include "tessera/gpu_mesh.h"
 #include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-Vec3 at(const std::vector<float>& of, std::size_t vertex) {
-  return {double(of[3 * vertex]), double(of[3 * vertex + 1]), double(of[3 * vertex + 2])};
-}
 
 /// Returns the unit vector along the part of `of` that is perpendicular to a unit normal; zero if there is next to
 /// none.
@@ -76,9 +72,9 @@ Status check_mesh(const Mesh& mesh, const PatchSet& set) {
   const std::size_t count = mesh.vertex_count();
   if (mesh.parameters.size() != 2 * count || mesh.normals.size() != 3 * count)
     return {StatusCode::invalid_argument, "tangents need a mesh with parameters and normals of all vertices"};
-  Status status = check_patches(mesh, set.patch_count());
-  if (status.ok()) status = check_corners("triangle", mesh.indices, 3, count);
-  return status.ok() ? check_corners("quad", mesh.quads, 4, count) : status;
+  Status status = check_face_patches(mesh, set.patch_count());
+  if (status.ok()) status = check_face_corners("triangle", mesh.indices, 3, count);
+  return status.ok() ? check_face_corners("quad", mesh.quads, 4, count) : status;
 }
 
 }  // namespace
@@ -101,7 +97,7 @@ Result<std::vector<float>> tangents(const Mesh& mesh, const PatchSet& set, Verte
     out.dv = View3<float>::interleaved(along_v);
     if (Status status = evaluate(set, at_patches, out, {}, execution); !status.ok()) return status;
     for (std::size_t k = 0; k < count; ++k) {
-      const Vec3 n = at(mesh.normals, k), du = at(along_u, k), dv = at(along_v, k);
+      const Vec3 n = vector_at(mesh.normals, k), du = vector_at(along_u, k), dv = vector_at(along_v, k);
       if (!(dot(n, n) > 0)) continue;
       Vec3 tangent = across(n, du);
       if (!(dot(tangent, tangent) > 0)) tangent = across(n, cross(dv, n));

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "tess/cells/mesh_faces.h"
 #include "tess/mesh/mesh_parts.h"
 #include "tessera/guard.h"
 
@@ -56,11 +57,6 @@ Status check_assembly(const MeshAssembly& assembly) {
   if (vertices <= std::numeric_limits<std::uint32_t>::max()) return {};
   return {StatusCode::count_mismatch,
           "all instances together have " + std::to_string(vertices) + " vertices, a mesh is limited to 4294967295"};
-}
-
-template <class Number>
-Vec3 vector_at(const std::vector<Number>& values, std::size_t k) {
-  return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
 }
 
 /// Whether the numbers are finite as they are stored.

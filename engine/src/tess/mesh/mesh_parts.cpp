@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/text.h"
+#include "tess/cells/mesh_faces.h"
 #include "tess/mesh/mesh_parts.h"
 #include "tessera/guard.h"
 #include "tessera/mesh_assembly.h"
@@ -12,18 +13,6 @@
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-Status no_such(const char* what, std::size_t index, std::size_t count, const char* face, std::size_t place) {
-  return {StatusCode::invalid_argument,
-          std::string(face) + " " + std::to_string(place) + " is of " + what + " " + std::to_string(index) +
-              ", there are " + std::to_string(count),
-          static_cast<std::ptrdiff_t>(place)};
-}
-
-Status check_patches(const char* face, std::size_t patches, std::size_t count) {
-  if (patches == count) return {};
-  return {StatusCode::count_mismatch, counted(patches, "patch", "patches") + " for " + counted(count, face)};
-}
 
 /// The surfaces that parts are named after.
 struct Surfaces {
@@ -56,15 +45,16 @@ class PartList {
  public:
   PartList(const PatchSet& set, const Surfaces& surfaces) : set_(set), surfaces_(surfaces) {}
 
-  /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such patch
-  /// or surface).
+  /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such
+  /// surface).
   Status add(std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
     if (parts_.empty() || patch != patch_) {
-      const char* const face = is_quad ? "quad" : "triangle";
-      const std::size_t place = is_quad ? q : t;
-      if (patch >= set_.patch_count()) return no_such("patch", patch, set_.patch_count(), face, place);
       const std::size_t surface = set_.source(patch).surface;
-      if (surface >= surfaces_.count) return no_such(surfaces_.kind, surface, surfaces_.count, face, place);
+      if (surface >= surfaces_.count)
+        return {StatusCode::invalid_argument,
+                std::string(is_quad ? "quad " : "triangle ") + std::to_string(is_quad ? q : t) + " is of " +
+                    surfaces_.kind + " " + std::to_string(surface) + ", there are " + std::to_string(surfaces_.count),
+                static_cast<std::ptrdiff_t>(is_quad ? q : t)};
       if (parts_.empty() || surface != surface_) {
         parts_.push_back(surfaces_.part(surface));
         parts_.back().first_triangle = t;
@@ -88,16 +78,12 @@ class PartList {
 };
 
 Result<std::vector<MeshPart>> parts_of(const Mesh& mesh, const PatchSet& set, const Surfaces& surfaces) {
-  const std::size_t triangles = mesh.triangle_count(), quads = mesh.quad_count();
-  if (Status status = check_patches("triangle", mesh.patches.size(), triangles); !status.ok()) return status;
-  if (Status status = check_patches("quad", mesh.quad_patches.size(), quads); !status.ok()) return status;
+  if (Status status = check_face_patches(mesh, set.patch_count()); !status.ok()) return status;
   PartList parts(set, surfaces);
-  for (std::size_t t = 0, q = 0; t < triangles || q < quads;) {
-    const bool is_quad = t == triangles || (q < quads && mesh.quad_patches[q] < mesh.patches[t]);
-    const std::uint32_t patch = is_quad ? mesh.quad_patches[q] : mesh.patches[t];
-    if (Status status = parts.add(patch, is_quad, t, q); !status.ok()) return status;
-    ++(is_quad ? q : t);
-  }
+  const auto add = [&](std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
+    return parts.add(patch, is_quad, t, q);
+  };
+  if (Status status = for_faces_by_patch(mesh, add); !status.ok()) return status;
   return std::move(parts).take();
 }
 

@@ -1,4 +1,4 @@
-#include "tess/gpu/mesh_faces.h"
+#include "tess/cells/mesh_faces.h"
 
 #include <string>
 
@@ -14,8 +14,8 @@ Status bad_face(const char* face, std::size_t place, const std::string& why) {
 
 }  // namespace
 
-Status check_corners(const char* face, std::span<const std::uint32_t> indices, std::size_t corners,
-                     std::size_t vertices) {
+Status check_face_corners(const char* face, std::span<const std::uint32_t> indices, std::size_t corners,
+                          std::size_t vertices) {
   for (std::size_t k = 0; k < indices.size(); ++k)
     if (indices[k] >= vertices)
       return bad_face(face, k / corners,
@@ -23,16 +23,17 @@ Status check_corners(const char* face, std::span<const std::uint32_t> indices, s
   return {};
 }
 
-Status check_patches(const Mesh& mesh, std::size_t patches) {
-  if (!mesh.has_patches()) return {StatusCode::invalid_argument, "the mesh has not one patch for each face"};
-  const auto check = [&](const char* face, std::span<const std::uint32_t> of) {
+Status check_face_patches(const Mesh& mesh, std::size_t patches) {
+  const auto check = [&](const char* face, std::span<const std::uint32_t> of, std::size_t faces) -> Status {
+    if (of.size() != faces)
+      return {StatusCode::count_mismatch, counted(of.size(), "patch", "patches") + " for " + counted(faces, face)};
     for (std::size_t k = 0; k < of.size(); ++k)
       if (of[k] >= patches)
         return bad_face(face, k, "is of patch " + std::to_string(of[k]) + ", there are " + std::to_string(patches));
-    return Status();
+    return {};
   };
-  const Status status = check("triangle", mesh.patches);
-  return status.ok() ? check("quad", mesh.quad_patches) : status;
+  const Status status = check("triangle", mesh.patches, mesh.triangle_count());
+  return status.ok() ? check("quad", mesh.quad_patches, mesh.quad_count()) : status;
 }
 
 }}  // namespace tessera::abi_0_1
