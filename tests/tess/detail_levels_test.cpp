@@ -122,6 +122,7 @@ TEST(DetailLevels, WrongOnesAreRefused) {
     refused({.tolerance = 0.1, .border_tolerance = wrong}, "above 0 and at most the tolerance");
   refused({.border_tolerance = 0.1, .angle = 0.1}, "needs a tolerance");
   refused({.tolerance = 0.1, .border_tolerance = 0.1, .angle = 0.1}, "none of angle");
+  refused({.tolerance = 0.1, .relative = true, .border_tolerance = 0.1}, "as a length");
   refused({.rates = UniformRates{2, 2}, .border_tolerance = 0.1}, "rates");
 }
 

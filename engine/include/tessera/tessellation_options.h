@@ -101,8 +101,8 @@ struct TessellationOptions {
   bool relative = false;
   /// Levels of detail: the tolerance, at most `tolerance`, for which borders of patches are divided. Plans of one set
   /// with the same border tolerance meet without cracks, so each patch may be drawn by any of them. Coarse levels save
-  /// the triangles within patches, not those at borders. For a `tolerance` without any other limit, in sets without cut
-  /// patches and edges of shapes; updates plan such a mesh anew.
+  /// the triangles within patches, not those at borders. For a `tolerance` that is a length, without any other limit,
+  /// in sets without cut patches and edges of shapes; updates plan such a mesh anew.
   std::optional<double> border_tolerance = {};
   /// The largest angle by which the surface's normal turns within a triangle, radians, above 0, at most pi / 2.
   ///

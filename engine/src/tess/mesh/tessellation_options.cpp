@@ -61,8 +61,10 @@ struct Distances {
 Status check_border_tolerance(const TessellationOptions& options, const PatchSet& set) {
   if (!options.border_tolerance) return {};
   const auto bad = [](const std::string& message) { return Status(StatusCode::invalid_argument, message); };
-  if (!options.tolerance || options.angle || options.pixels || options.fewest || options.headroom > 0)
-    return bad("a border tolerance needs a tolerance, and none of angle, pixels, headroom and fewest");
+  // Levels must agree to the last bit on the length that borders keep, so it is no share.
+  if (!options.tolerance || options.relative || options.angle || options.pixels || options.fewest ||
+      options.headroom > 0)
+    return bad("a border tolerance needs a tolerance, as a length, and none of angle, pixels, headroom and fewest");
   if (!(*options.border_tolerance > 0 && *options.border_tolerance <= *options.tolerance))
     return bad("the border tolerance is " + text(*options.border_tolerance) +
                ", it must be above 0 and at most the tolerance, " + text(*options.tolerance));

@@ -258,24 +258,22 @@ void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& pa
   divide(facts, choose_borders(facts, tolerance, patches), patches);
 }
 
-void divide_within_borders(const PlanFacts& facts, double tolerance, double border_tolerance,
-                           DividedPatches& of_borders, DividedPatches& patches) {
-  const BorderSegments borders = choose_borders(facts, border_tolerance, of_borders);
+void divide_within_borders(const PlanFacts& facts, double tolerance, double border_tolerance, DividedPatches& patches) {
+  const BorderSegments borders = choose_borders(facts, border_tolerance, patches);
+  const std::vector<PatchSegments> of_borders = std::move(patches.segments);  // the memory that `borders` refers to
+  patches.segments = of_borders;
   patches.crosses.assign(patches.segments.size(), 0);
   for (std::size_t k = 0; k < patches.segments.size(); ++k) {
     const double left = tolerance - facts.needs.given(k);
-    const Rates most = of_borders.segments[k].rates();
-    const std::optional<Rates> rates =
-        left > 0 ? rates_within(facts.needs.chord(k), left, most) : std::optional<Rates>();
-    if (rates && double(rates->u) * rates->v < double(most.u) * most.v) {
-      patches.segments[k] = *rates;
-      patches.bounds[k] = rounded_up(facts.needs.chord(k).distance_of(*rates, true) + facts.needs.given(k));
-      patches.crosses[k] = 1;
-    } else {
-      patches.segments[k] = of_borders.segments[k];
-      patches.bounds[k] = of_borders.bounds[k];
-    }
+    const Rates most = of_borders[k].rates();
+    const auto rates = left > 0 ? rates_within(facts.needs.chord(k), left, most) : std::optional<Rates>();
+    if (!rates || !(double(rates->u) * rates->v < double(most.u) * most.v)) continue;
+    patches.segments[k] = *rates;
+    patches.bounds[k] = rounded_up(facts.needs.chord(k).distance_of(*rates, true) + facts.needs.given(k));
+    patches.crosses[k] = 1;
   }
+  if (!patches.rare->beyond.empty())
+    std::erase_if(patches.rare.make().beyond, [&](std::uint32_t k) { return double(patches.bounds[k]) <= tolerance; });
   divide(facts, borders, patches);
 }
 

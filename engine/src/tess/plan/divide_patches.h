@@ -11,9 +11,8 @@ namespace tessera { inline namespace abi_0_1 {
 /// lies beside an even one.
 void divide_patches(const PlanFacts& facts, double tolerance, DividedPatches& patches);
 
-/// Divides patches whose borders are those of a plan for a finer tolerance, `border_tolerance`. `of_borders`: filled by
-/// choose_rates() for it. Patches that cannot keep the tolerance between such borders have its segments.
-void divide_within_borders(const PlanFacts& facts, double tolerance, double border_tolerance,
-                           DividedPatches& of_borders, DividedPatches& patches);
+/// Divides borders as above, for `border_tolerance`, and the patches between them for a larger tolerance. Those that
+/// cannot keep it between such borders have the segments that choose_rates() found for `border_tolerance`.
+void divide_within_borders(const PlanFacts& facts, double tolerance, double border_tolerance, DividedPatches& patches);
 
 }}  // namespace tessera::abi_0_1

@@ -13,16 +13,13 @@ Result<CertifiedPlan> make_plan(const PlanFacts& facts, const PlanRequest& reque
   const bool is_cut = facts.needs.set().trims != nullptr;
   DividedPatches patches{.has_f64_positions = options.f64_positions};
   if (!options.f64_patches.empty()) patches.rare.make().f64_patches = options.f64_patches;
-  if (Status status = choose_rates(facts, request, patches, execution); !status.ok()) return status;
-  if (request.border_tolerance > 0) {
-    DividedPatches of_borders;
-    const PlanRequest finer{.tolerance = request.border_tolerance};
-    if (Status status = choose_rates(facts, finer, of_borders, {.cancel = execution.cancel}); !status.ok())
-      return status;
-    divide_within_borders(facts, request.tolerance, request.border_tolerance, of_borders, patches);
-  } else if (!is_cut) {
+  PlanRequest of_borders = request;
+  if (request.border_tolerance > 0) of_borders.tolerance = request.border_tolerance;
+  if (Status status = choose_rates(facts, of_borders, patches, execution); !status.ok()) return status;
+  if (request.border_tolerance > 0)
+    divide_within_borders(facts, request.tolerance, request.border_tolerance, patches);
+  else if (!is_cut)
     divide_patches(facts, request.tolerance, patches);
-  }
   if (facts.faces.runs) {
     if (Status status = close_faces(facts, request, patches, execution); !status.ok()) return status;
   } else if (is_cut) {
