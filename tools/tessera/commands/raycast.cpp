@@ -260,7 +260,8 @@ void add_raycast(Command& tool, Session& session) {
     if (options->team) check_team(*options);
     if (auto& camera = options->settings.camera) camera->up = render::from_z_up({0, 0, 1}, options->settings.up);
     const Plan plan = plan_raycast(*options, session.common);
-    if (plan.jobs.size() > 1 && options->rays.empty() && command.option("--quality").count == 0) {
+    const bool is_picture = options->rays.empty() && !is_exr(format_path(options->picture, options->format));
+    if (plan.jobs.size() > 1 && is_picture && command.option("--quality").count == 0) {
       make_draft(options->settings);
       if (!options->team)
         complain(std::to_string(plan.jobs.size()) +
