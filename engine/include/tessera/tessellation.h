@@ -56,7 +56,7 @@ struct MeshChange {
 /// The plan of a mesh: how each patch is divided, and where its vertices and triangles lie.
 ///
 ///   auto plan = Tessellation::make(set, {.tolerance = 1e-3});
-///   auto mesh = plan->mesh(set);
+///   auto mesh = plan->run(set);
 ///   auto change = plan->update(set, {patches, points}, *mesh);  // each frame
 ///
 /// - Bounds: the bound of each patch is proven, in both directions, rounding and welds included.
@@ -108,8 +108,6 @@ class Tessellation {
   /// It is at most the tolerance, unless there are patches_beyond_tolerance(). Like all bounds of a plan it holds for
   /// the set and the revision that the plan was made or updated for.
   double bound() const;
-  /// Returns the same of the patches that the view sees, whose pixel_bounds() are above 0; bound() without pixels.
-  double seen_bound() const;
   /// Whether the bounds are proven; false with rates, and where the set's fit error is only sampled.
   bool certified() const;
   /// Returns the distance that the plan keeps: the tolerance, as a length, or the smallest one that make() found.
@@ -166,8 +164,8 @@ class Tessellation {
   /// unless execution.stores is plain. Allocates nothing after the first call.
   Status run(const PatchSet& set, const MeshViews& out, const Execution& execution = {}) const;
 
-  /// Allocates and writes the mesh in one call. Errors: those of allocate() and run().
-  Result<Mesh> mesh(const PatchSet& set, const Execution& execution = {}) const;
+  /// Allocates and writes the mesh in one call. Errors: those of allocate(), and as above.
+  Result<Mesh> run(const PatchSet& set) const;
 
   /// Takes the view that the next update plans for, with or without edits. The plan, its bounds and what run() writes
   /// stay those of the view before until then. Errors, with nothing changed: invalid_argument (a view without a
@@ -216,8 +214,8 @@ class Tessellation {
   Result<MeshChange> update(PatchSet& set, const MeshViews& out, const Execution& execution = {}) {
     return update(set, PatchEdits{}, out, execution);
   }
-  /// Follows edits as above, and replaces `mesh`, which mesh() or an update has written, where the topology has
-  /// changed. Errors: those above, and those of mesh(): call that then.
+  /// Follows edits as above, and replaces `mesh`, which run() or an update has written, where the topology has
+  /// changed. Errors: those above, and those of run(): call that then.
   Result<MeshChange> update(PatchSet& set, const PatchEdits& edits, Mesh& mesh, const Execution& execution = {});
   /// Follows edits of spline surfaces: converts the patches that the moved control points act on, to the same bits as
   /// make_patch_set(), and updates as above.
@@ -235,6 +233,10 @@ class Tessellation {
   explicit Tessellation(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Returns Tessellation::bound() of the patches that the view of a plan of pixels sees, those whose pixel_bounds() are
+/// above 0. Without pixels it is bound().
+double seen_bound(const Tessellation& plan);
 
 /// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
 ///

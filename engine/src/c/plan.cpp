@@ -106,7 +106,7 @@ tsr_status tsr_plan_describe(const tsr_plan* plan, tsr_plan_info* info) {
     tsr_plan_info filled{};
     filled.vertices = size.vertices, filled.triangles = size.triangles, filled.quads = size.quads;
     filled.tolerance = from.tolerance(), filled.bound = from.bound(), filled.gap = from.gap();
-    filled.angle = from.angle(), filled.pixels = from.pixels(), filled.seen_bound = from.seen_bound();
+    filled.angle = from.angle(), filled.pixels = from.pixels(), filled.seen_bound = seen_bound(from);
     filled.is_certified = from.certified(), filled.has_normals = of->has_normals;
     filled.open_edges = from.open_edges(), filled.crossed_patches = from.crossed_patches().size();
     return write_struct("tsr_plan_info", info, filled);

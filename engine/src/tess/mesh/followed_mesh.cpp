@@ -67,7 +67,7 @@ Status ProvenMesh::set_view(const View& view) {
 Result<MeshChange> ProvenMesh::update(PatchSet& set, const PatchEdits& edits, const MeshViews& out,
                                       const Execution& execution) {
   PatchSet::Impl& inner = impl_of(set);
-  if (is_planned_anew_) return update_anew(set, edits, out, execution);
+  if (plans_anew(inner, plan_, options_)) return update_anew(set, edits, out, execution);
   if (Status status = start(set, edits, out, execution); !status.ok()) return status;
   CallProgress progress(execution, update_ends);
   // Edges and welds must be those of the plan: an update that finds edited patches has to find them anew.

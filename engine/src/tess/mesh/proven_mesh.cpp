@@ -57,11 +57,6 @@ struct Planned {
   CertifiedPlan plan;
 };
 
-/// Returns the distance that borders keep, as a length; 0 if there is none of their own.
-double border_tolerance_of(const TessellationOptions& options, double tolerance) {
-  return options.border_tolerance ? tolerance * (*options.border_tolerance / *options.tolerance) : 0;
-}
-
 /// Makes a plan. `tolerance`: the distance to keep, or any if there is a budget. `kept`: segments that
 /// patches keep where possible; if triangles then exceed their limit, none are kept.
 Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options, double tolerance,
@@ -77,10 +72,9 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     return found.status();
   };
   Status found = find_smallest();
-  const double of_borders = border_tolerance_of(options, tolerance);
   if (!planned->f64_positions)
     planned->f64_patches =
-        patches_that_need_f64(facts->needs, facts->borders.edges(), of_borders > 0 ? of_borders : tolerance);
+        patches_that_need_f64(facts->needs, facts->borders.edges(), options.border_tolerance.value_or(tolerance));
   if (!planned->f64_positions && !planned->f64_patches.empty()) {
     // Doubles may keep a smaller tolerance than the one found, and other patches may need doubles for it.
     if (options.budget) std::ranges::fill(planned->f64_patches, 1);
@@ -89,7 +83,8 @@ Result<Planned> plan_for(const PatchSet& set, const TessellationOptions& options
     found = find_smallest();
   }
   if (!found.ok()) return found;
-  PlanRequest request{tolerance, planned->fewest, kept, options.max_triangles, of_borders, options.headroom};
+  PlanRequest request{
+      tolerance, planned->fewest, kept, options.max_triangles, options.border_tolerance.value_or(0), options.headroom};
   Result<CertifiedPlan> plan = make_limited_plan(*facts, request, execution);
   if (!plan && plan.status().code() == StatusCode::invalid_argument && !kept.segments.empty()) {
     request.kept = {};
@@ -119,7 +114,7 @@ Result<std::unique_ptr<ProvenMesh>> ProvenMesh::make(const PatchSet& set, const 
   std::unique_ptr<ProvenMesh> mesh(
       new ProvenMesh(set, options, made->tolerance, std::move(made->plan), made->facts, *isa));
   if (Status status = mesh->join(impl_of(set), made->facts, progress.loops()); !status.ok()) return status;
-  if (before && !mesh->is_planned_anew_)
+  if (before && !plans_anew(impl_of(set), mesh->plan_, options))
     mesh->update_ = std::make_unique<PlanUpdate>(std::move(made->facts), mesh->of(impl_of(set)));
   (void)progress.finish({});
   return mesh;
@@ -150,7 +145,6 @@ ProvenMesh::ProvenMesh(const PatchSet& set, const TessellationOptions& options, 
       origin_(set.origin()),
       revision_(set.revision()),
       is_certified_(set.fit_error().certified),
-      is_planned_anew_(impl_of(set).trims || plan_.closed() || options.border_tolerance),
       isa_(isa),
       tables_(MeshTables::of(impl_of(set), plan_.patches().divisions, kernel::kernels(isa).mesh_points != nullptr)) {}
 

@@ -18,6 +18,11 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
 /// no size that it could be a share of).
 Result<double> tolerance_of(const TessellationOptions& options, const PatchSet& set);
 
+/// Whether updates plan all anew: a set with trims or with edges of shapes, or borders of a tolerance of their own.
+inline bool plans_anew(const PatchSet::Impl& set, const CertifiedPlan& plan, const TessellationOptions& options) {
+  return set.trims || plan.closed() || options.border_tolerance;
+}
+
 /// Returns copies that few plans have, or none.
 inline const VertexCopies& copies_in(const std::unique_ptr<VertexCopies>& slot) {
   static const VertexCopies none;
@@ -35,7 +40,6 @@ class ProvenMesh final : public Tessellation::Impl {
   const CertifiedPlan& plan() const { return plan_; }
   const MeshTables& tables() const { return *tables_; }
   bool has_f64_positions() const { return plan_.patches().has_f64_positions; }
-  double tolerance() const { return tolerance_; }  ///< the distance to keep, infinite if there is no limit
 
   Proof proof() const override;
   MeshCapacity capacity() const override { return before(plan_.patch_count()); }
@@ -99,8 +103,6 @@ class ProvenMesh final : public Tessellation::Impl {
   Vec3 origin_;
   std::uint64_t revision_;  ///< the set's, of which the plan is proven
   bool is_certified_;
-  /// Whether updates plan all anew: a set with trims or with edges of shapes, or borders of a tolerance of their own.
-  bool is_planned_anew_;
   bool is_view_new_ = false;  ///< whether the view of options_ is not the one that the plan is proven for
   Isa isa_;
   std::shared_ptr<const MeshTables> tables_;

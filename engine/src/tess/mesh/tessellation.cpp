@@ -69,14 +69,6 @@ std::size_t Tessellation::patches_without_angle() const {
 std::span<const float> Tessellation::angles() const { return impl_->proof().angles; }
 double Tessellation::gap() const { return impl_->proof().gap; }
 std::span<const float> Tessellation::edge_gaps() const { return impl_->proof().edge_gaps; }
-double Tessellation::seen_bound() const {
-  const Impl::Proof proof = impl_->proof();
-  if (proof.pixels.empty()) return bound();
-  float most = 0;
-  for (std::size_t k = 0; k < proof.pixels.size(); ++k)
-    if (proof.pixels[k] > 0 && !std::isinf(proof.bounds[k])) most = std::max(most, proof.bounds[k]);
-  return double(most);
-}
 double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
 std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }
@@ -97,10 +89,10 @@ Status Tessellation::run(const PatchSet& set, const MeshViews& out, const Execut
   });
 }
 
-Result<Mesh> Tessellation::mesh(const PatchSet& set, const Execution& execution) const {
+Result<Mesh> Tessellation::run(const PatchSet& set) const {
   Result<Mesh> mesh = allocate();
   if (!mesh) return mesh;
-  if (Status status = run(set, mesh->views(), execution); !status.ok()) return status;
+  if (Status status = run(set, mesh->views()); !status.ok()) return status;
   return mesh;
 }
 
@@ -130,8 +122,9 @@ Result<MeshChange> Tessellation::update(PatchSet& set, const PatchEdits& edits, 
                                         const Execution& execution) {
   Result<MeshChange> change = update(set, edits, mesh.views(), execution);
   if (!change || !change->topology) return change;
-  Result<Mesh> next = this->mesh(set, {.cancel = execution.cancel, .stores = execution.stores});
+  Result<Mesh> next = allocate();
   if (!next) return next.status();
+  if (Status status = run(set, next->views(), {.cancel = execution.cancel}); !status.ok()) return status;
   mesh = *std::move(next);
   return change;
 }
@@ -142,6 +135,15 @@ Result<MeshChange> Tessellation::update(PatchSet& set, std::span<const SurfaceEd
     if (Status status = impl_->check_set(set); !status.ok()) return status;
     return impl_->update_surfaces(set, edits, out, execution);
   });
+}
+
+double seen_bound(const Tessellation& plan) {
+  const std::span<const float> bounds = plan.bounds(), pixels = plan.pixel_bounds();
+  if (pixels.empty()) return plan.bound();
+  float most = 0;
+  for (std::size_t k = 0; k < pixels.size(); ++k)
+    if (pixels[k] > 0 && !std::isinf(bounds[k])) most = std::max(most, bounds[k]);
+  return double(most);
 }
 
 }}  // namespace tessera::abi_0_1
