@@ -48,6 +48,7 @@
 
 // Headers of the libraries tessera::ray, tessera::io and tessera::parts are installed with these.
 #if __has_include("tessera/ray_scene.h")
+#include "tessera/nearest_points.h"
 #include "tessera/ray_hit.h"
 #include "tessera/ray_scene.h"
 #endif

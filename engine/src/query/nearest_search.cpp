@@ -1,0 +1,183 @@
+#include "query/nearest_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ray/leaf/kept_part.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// Rounding of a distance, in the scene's coordinates, and relative to it.
+constexpr double slack = 0x1p-47, relative_slack = 0x1p-50;
+/// How far apart two places are that count as several nearest points, in the scene's coordinates.
+constexpr double min_apart = 1e-6;
+constexpr std::size_t max_stack = 256;
+
+}  // namespace
+
+NearestSearch::NearestSearch(const SetView& set, const QueryPieces& pieces) : set_(set), pieces_(pieces) {
+  stack_.reserve(max_stack);
+}
+
+NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance) {
+  const SceneFrame& frame = pieces_.frame();
+  point_ = point - frame.centre;
+  scene_point_ = frame.scale * point_;
+  outcome_ = {};
+  outcome_.slack = (slack + relative_slack * length(scene_point_)) / frame.scale;
+  outcome_.best.distance = max_distance;
+  tie_count_ = 0;
+  reach_ = (max_distance + outcome_.slack) * frame.scale;
+  deferred_.clear();
+  pieces_.tree().visit_near(scene_point_, *this);
+  for (const Deferred& one : deferred_)
+    if (one.lower <= reach_) branch(*one.piece);
+  const double limit = outcome_.best.distance + outcome_.slack;
+  for (std::size_t k = 0; k < tie_count_; ++k)
+    outcome_.ambiguous |=
+        ties_[k].distance <= limit && length(ties_[k].position - outcome_.best.position) * frame.scale > min_apart;
+  return outcome_;
+}
+
+bool NearestSearch::visit(std::uint32_t item, double distance) {
+  if (outcome_.parts >= max_parts) {
+    outcome_.complete = false;
+    return false;
+  }
+  const std::span<const QueryPiece> pieces = pieces_.pieces();
+  if (item < pieces.size()) {
+    const QueryPiece& piece = pieces[item];
+    ++outcome_.parts;
+    if (is_decided(piece, piece.area, piece.facts)) return true;
+    // The nearest kept point of a cut piece may lie on a curve: once that is known, few parts of the piece are left.
+    if (piece.is_cut)
+      deferred_.push_back({&piece, distance});
+    else
+      branch(piece);
+    return true;
+  }
+  const KeptCurve& curve = pieces_.curves()[item - pieces.size()];
+  const CurveGround ground{&set_.patch(curve.patch), &set_.source(curve.patch).domain, &pieces_.frame()};
+  const Foot foot =
+      nearest_foot(ground, curve, point_, outcome_.best.distance + outcome_.slack, max_parts, outcome_.parts);
+  if (!foot.converged) outcome_.complete = false;
+  if (!foot.is_farther) offer({curve.patch, foot.u, foot.v, foot.position, foot.distance, true});
+  return true;
+}
+
+/// Finds the nearest point of an area if its place is clear: at a corner, or on a side or within, where the distance is
+/// convex.
+template <class T>
+bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts) {
+  const DistanceShape shape = distance_shape(facts, scene_point_);
+  bool has_u = shape.along_x == Slope::unknown, has_v = shape.along_y == Slope::unknown;
+  PatchPart part = area;
+  if (!has_u) part.u0 = part.u1 = shape.along_x == Slope::rises ? area.u0 : area.u1;
+  if (!has_v) part.v0 = part.v1 = shape.along_y == Slope::rises ? area.v0 : area.v1;
+  if (has_u != has_v && is_point(piece.patch, part)) {
+    part.u0 = part.u1, part.v0 = part.v1;
+    has_u = has_v = false;
+  }
+  if (has_u && has_v ? !shape.convex : has_u ? !shape.convex_x : has_v && !shape.convex_y) return false;
+  // The start is the foot on the tangent plane.
+  const Vec3 from = scene_point_ - Vec3(facts.centre);
+  const double c = facts.cosine, p = dot(from, Vec3(facts.axes[0]));
+  const double q = c * p + double(facts.sine) * dot(from, Vec3(facts.axes[1]));
+  const double det = std::max(1 - c * c, 1e-3);
+  const double x = has_u && has_v ? (p - c * q) / det : p, y = has_u && has_v ? (q - c * p) / det : q;
+  const double u = 0.5 + x / double(facts.length_u), v = 0.5 + y / double(facts.length_v);
+  const Foot foot =
+      nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, part, area.u0 + u * (area.u1 - area.u0),
+                   area.v0 + v * (area.v1 - area.v0), outcome_.best.distance + outcome_.slack);
+  if (foot.is_farther) return true;
+  offer(piece, foot);
+  return foot.converged;
+}
+
+/// Halves a piece until each part is decided, or cannot be nearer by more than rounding.
+void NearestSearch::branch(const QueryPiece& piece) {
+  const double scale = pieces_.frame().scale;
+  stack_.clear();
+  push(piece, piece.area);
+  while (!stack_.empty()) {
+    const Part part = stack_.back();
+    stack_.pop_back();
+    if (part.lower > reach_ || is_decided(piece, part.area, part.bounds.facts)) continue;
+    const PatchPart& area = part.area;
+    const double middle_u = 0.5 * (area.u0 + area.u1), middle_v = 0.5 * (area.v0 + area.v1);
+    offer(piece,
+          nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, area, middle_u, middle_v, infinity));
+    // All points of the part are as near, up to rounding, as the nearest one, or as each other.
+    const double rounding = outcome_.slack * scale;
+    if (part.lower >= outcome_.best.distance * scale - rounding || part.bounds.box.diagonal() <= 4 * rounding) continue;
+    if (++outcome_.parts >= max_parts || stack_.size() + 2 > max_stack) {
+      outcome_.complete = false;
+      return;
+    }
+    const auto [lower, upper] = halves(area, part.bounds.facts);
+    push(piece, lower), push(piece, upper);
+    const std::size_t count = stack_.size();
+    if (count >= 2 && stack_[count - 2].lower < stack_[count - 1].lower)
+      std::swap(stack_[count - 2], stack_[count - 1]);
+  }
+}
+
+/// Puts a part on the stack, unless loops cut it away or it is too far.
+void NearestSearch::push(const QueryPiece& piece, const PatchPart& area) {
+  if (is_cut_away(piece, area)) return;
+  if (patch_of_nets_ != piece.patch) nets_.start(set_.patch(piece.patch), pieces_.frame());
+  patch_of_nets_ = piece.patch;
+  const PieceBounds bounds = bound_piece(nets_.part(area));
+  const double lower = bounds.box.distance(scene_point_);
+  if (lower <= reach_) stack_.push_back({area, lower, bounds});
+}
+
+/// Whether a line of a patch lies on a side that has collapsed to a point.
+bool NearestSearch::is_point(std::uint32_t patch, const PatchPart& line) const {
+  const SideMask collapsed = set_.collapsed_sides(patch);
+  return (collapsed.has(Side::u0) && line.u1 == 0) || (collapsed.has(Side::u1) && line.u0 == 1) ||
+         (collapsed.has(Side::v0) && line.v1 == 0) || (collapsed.has(Side::v1) && line.v0 == 1);
+}
+
+bool NearestSearch::is_cut_away(const QueryPiece& piece, const PatchPart& area) const {
+  if (!piece.is_cut) return false;
+  const Domain box = rectangle_of(set_.source(piece.patch).domain, area);
+  const TrimRegion& region = pieces_.regions().of(piece.patch);
+  const TrimSide side = side_of_all(region, box);
+  if (side != TrimSide::border) return side == TrimSide::outside;
+  // Cells do not tell where a box lies across their sides, however small it is. The pieces do.
+  return kept_part(region, pieces_.regions().pieces_of(piece.patch), box).use == PatchUse::out;
+}
+
+bool NearestSearch::is_kept(std::uint32_t patch, double u, double v) const {
+  const Domain& domain = set_.source(patch).domain;
+  return pieces_.regions().of(patch).locate(domain.u_at(u), domain.v_at(v)) != TrimSide::outside;
+}
+
+void NearestSearch::offer(const QueryPiece& piece, const Foot& foot) {
+  if (!(foot.distance <= outcome_.best.distance + outcome_.slack)) return;
+  if (piece.is_cut && !is_kept(piece.patch, foot.u, foot.v)) return;
+  offer({piece.patch, foot.u, foot.v, foot.position, foot.distance, foot.on_border});
+}
+
+/// Takes a candidate if it is the nearest so far; of equally near ones the first by patch and parameters, whichever was
+/// found first. Others that are as near up to rounding are kept as ties.
+void NearestSearch::offer(const NearCandidate& candidate) {
+  NearCandidate& best = outcome_.best;
+  if (!(candidate.distance <= best.distance + outcome_.slack)) return;
+  const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
+  const bool wins = order(candidate) < order(best);
+  const NearCandidate other = wins ? best : candidate;
+  if (wins) best = candidate;
+  reach_ = std::min(reach_, (best.distance + outcome_.slack) * pieces_.frame().scale);
+  if (other.patch == no_id || length(other.position - best.position) * pieces_.frame().scale <= min_apart) return;
+  if (tie_count_ == max_ties) {  // the farthest is of the least use
+    auto* const farthest = std::ranges::max_element(ties_, {}, &NearCandidate::distance);
+    if (other.distance < farthest->distance) *farthest = other;
+  } else {
+    ties_[tie_count_++] = other;
+  }
+}
+
+}}  // namespace tessera::abi_0_1

@@ -1,0 +1,85 @@
+#pragma once
+// The search for the nearest point of all pieces, with none missed.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "query/query_pieces.h"
+#include "ray/line/set_view.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// A point of a patch that may be the nearest, relative to the frame's centre in the model's unit.
+struct NearCandidate {
+  std::uint32_t patch = no_id;
+  double u = 0, v = 0;
+  Vec3 position;
+  double distance = infinity;
+  bool on_border = false;
+};
+
+/// The search of one point after the other, on one thread.
+class NearestSearch {
+ public:
+  /// Refers to both.
+  NearestSearch(const SetView& set, const QueryPieces& pieces);
+
+  /// What was found for a point.
+  struct Outcome {
+    NearCandidate best;    ///< patch no_id: nothing within the distance
+    bool complete = true;  ///< no point of a piece is nearer by more than slack
+    bool ambiguous = false;
+    double slack = 0;  ///< rounding, in the model's unit
+    int parts = 0;     ///< the work: pieces, curves and parts of them
+  };
+  /// `point`: finite. `max_distance`: at least 0, perhaps infinite.
+  Outcome run(const Vec3& point, double max_distance);
+
+  /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
+  /// search ends before.
+  static constexpr int max_parts = 2000;
+
+ private:
+  friend class QueryTree;
+  struct Part {
+    PatchPart area;
+    double lower;  ///< bounds the distance, in the scene's coordinates
+    PieceBounds bounds;
+  };
+
+  double reach() const { return reach_; }
+  bool visit(std::uint32_t item, double distance);
+  void branch(const QueryPiece& piece);
+  void push(const QueryPiece& piece, const PatchPart& area);
+  template <class T>
+  bool is_decided(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts);
+  void offer(const QueryPiece& piece, const Foot& foot);
+  void offer(const NearCandidate& candidate);
+  bool is_kept(std::uint32_t patch, double u, double v) const;
+  bool is_point(std::uint32_t patch, const PatchPart& line) const;
+  bool is_cut_away(const QueryPiece& piece, const PatchPart& area) const;
+
+  const SetView& set_;
+  const QueryPieces& pieces_;
+  NetParts nets_;
+  std::uint32_t patch_of_nets_ = no_id;
+  std::vector<Part> stack_;
+  /// A cut piece that is not decided as a whole.
+  struct Deferred {
+    const QueryPiece* piece;
+    double lower;  ///< bounds its distance, in the scene's coordinates
+  };
+  std::vector<Deferred> deferred_;
+  Vec3 point_;        ///< relative to the frame's centre, in the model's unit
+  Vec3 scene_point_;  ///< in the scene's coordinates
+  double reach_ = 0;  ///< in the scene's coordinates: pieces beyond are of no use
+  Outcome outcome_;
+  static constexpr std::size_t max_ties = 4;
+  std::array<NearCandidate, max_ties> ties_;
+  std::size_t tie_count_ = 0;
+};
+
+}}  // namespace tessera::abi_0_1

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <string>
+
+#include "base/impl_access.h"
+#include "base/infinity.h"
+#include "base/text.h"
+#include "eval/grid_checks.h"
+#include "parallel/parallel_for.h"
+#include "query/point_scene_impl.h"
+#include "tessera/guard.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// Calls visit(name, view) for each output.
+template <class T, class Visit>
+void for_each_output(const NearestViews<T>& views, const Visit& visit) {
+  visit("kind", views.kind);
+  visit("patch", views.patch);
+  visit("surface", views.surface);
+  visit("u", views.u);
+  visit("v", views.v);
+  visit("patch_u", views.patch_u);
+  visit("patch_v", views.patch_v);
+  visit("distance", views.distance);
+  visit("position", views.position);
+  visit("normal", views.normal);
+  visit("flags", views.flags);
+}
+
+template <class View>
+bool is_wanted(const View& view) {
+  return std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
+}
+
+template <class T, class U>
+Status check(const PointViews<T>& points, const NearestViews<U>& nearest) {
+  const std::size_t count = points.position.size;
+  if (count == 0) return {};
+  ViewChecks checks(count);
+  checks.add("position", points.position);
+  if (View1<const T> reach = points.max_distance; !reach.empty()) {
+    const std::size_t records = reach.stride == 0 ? 1 : count;
+    if (reach.stride == 0) reach.stride = 1;
+    if (reach.size < records)
+      return {StatusCode::count_mismatch, "max_distance needs " + counted(count, "record") +
+                                              ", or one of stride 0, found " + std::to_string(reach.size)};
+    checks.add("max_distance", reach, records);
+  }
+  bool has_output = false;
+  for_each_output(nearest, [&](const char* name, const auto& view) {
+    if (!is_wanted(view)) return;
+    checks.add(name, view);
+    has_output = true;
+  });
+  if (Status status = checks.status(); !status.ok()) return status;
+  return has_output ? Status() : Status(StatusCode::invalid_argument, "no output is requested");
+}
+
+template <class T>
+void write(const NearestPoint& point, const NearestViews<T>& out, std::size_t k) {
+  const bool is_found = point.kind == NearestKind::found;
+  const auto set = [&](const auto& view, auto value) {
+    if (!view.empty()) view.at(k, 0) = value;
+  };
+  const auto number = [&](const View1<T>& view, double value) { set(view, static_cast<T>(value)); };
+  const auto vector = [&](const View3<T>& view, const Vec3& value) {
+    if (view.empty()) return;
+    view.at(k, 0) = static_cast<T>(value.x), view.at(k, 1) = static_cast<T>(value.y);
+    view.at(k, 2) = static_cast<T>(value.z);
+  };
+  set(out.kind, point.kind), set(out.flags, point.flags);
+  set(out.patch, is_found ? point.patch : no_id), set(out.surface, is_found ? point.surface : no_id);
+  number(out.u, point.u), number(out.v, point.v);
+  number(out.patch_u, point.patch_u), number(out.patch_v, point.patch_v), number(out.distance, point.distance);
+  vector(out.position, point.position), vector(out.normal, point.normal);
+}
+
+template <class T, class U>
+Status nearest_of(const PointScene& scene, const PointViews<T>& points, const NearestViews<U>& nearest,
+                  const Execution& execution) {
+  return guarded([&]() -> Status {
+    if (Status status = check(points, nearest); !status.ok()) return status;
+    const PointScene::Impl& impl = impl_of(scene);
+    if (Status status = impl.check_fresh(); !status.ok()) return status;
+    const auto find = [&](std::size_t begin, std::size_t end) {
+      NearestSearch search(impl.set(), impl.pieces());
+      for (std::size_t k = begin; k < end; ++k) {
+        const View3<const T>& p = points.position;
+        const double reach = points.max_distance.empty() ? infinity : double(points.max_distance.at(k, 0));
+        write(impl.nearest({p.at(k, 0), p.at(k, 1), p.at(k, 2)}, reach, search), nearest, k);
+      }
+    };
+    return parallel_for(points.position.size, PointScene::Impl::points_per_task, execution, find);
+  });
+}
+
+}  // namespace
+
+Status nearest(const PointScene& scene, const PointViews<float>& points, const NearestViews<float>& nearest,
+               const Execution& execution) {
+  return nearest_of(scene, points, nearest, execution);
+}
+Status nearest(const PointScene& scene, const PointViews<float>& points, const NearestViews<double>& nearest,
+               const Execution& execution) {
+  return nearest_of(scene, points, nearest, execution);
+}
+Status nearest(const PointScene& scene, const PointViews<double>& points, const NearestViews<float>& nearest,
+               const Execution& execution) {
+  return nearest_of(scene, points, nearest, execution);
+}
+Status nearest(const PointScene& scene, const PointViews<double>& points, const NearestViews<double>& nearest,
+               const Execution& execution) {
+  return nearest_of(scene, points, nearest, execution);
+}
+
+}}  // namespace tessera::abi_0_1
