@@ -51,6 +51,7 @@
 #include "tessera/nearest_points.h"
 #include "tessera/ray_hit.h"
 #include "tessera/ray_scene.h"
+#include "tessera/solid.h"
 #endif
 #if __has_include("tessera/io.h")
 #include "tessera/cad.h"

@@ -35,6 +35,11 @@ class LeafTrims final : public RootSides {
   bool keeps(const LeafRoot& root) const override {
     return !any() || !regions_.has_region(root.patch) || side_of(root) != TrimSide::outside;
   }
+  /// Whether a point of any patch, also of a whole one, is kept and on no loop. Always allowed.
+  bool keeps_point(std::uint32_t patch, double u, double v) const {
+    return !any() || !regions_.has_region(patch) ||
+           side_near(patch, u, v, parameter_rounding, parameter_rounding) == TrimSide::inside;
+  }
   std::size_t memory_bytes() const { return squares_.capacity() * sizeof(KeptSquares) + regions_.memory_bytes(); }
 
  private:
