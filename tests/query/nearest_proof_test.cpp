@@ -35,8 +35,8 @@ NearestTally tally_of(const RayClass& of, std::size_t count, std::uint64_t seed)
     const Vec3 there = de_casteljau(of.patches[found.patch], found.patch_u, found.patch_v);
     const double reach = size + length(point - set.box().centre());
     tally.off +=
-        !(length(there - found.position) <= 1e-13 * size + 4e-16 * length(there)) ||
-        !(std::abs(length(point - there) - found.distance) <= found.rounding + 1e-14 * reach + 4e-16 * length(there));
+        !(length(there - found.position) <= 1e-13 * size + 1e-15 * length(there)) ||
+        !(std::abs(length(point - there) - found.distance) <= found.rounding + 1e-14 * reach + 1e-15 * length(there));
     const double best = reference_distance(of.patches, point, 1e-14 * size * size);
     const double beyond = found.distance - best;
     tally.far_from_best += beyond > 1e-6 * size;

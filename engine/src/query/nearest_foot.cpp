@@ -76,8 +76,9 @@ Foot nearest_foot(const BezierPatch& patch, const Vec3& origin, const Vec3& poin
         (holds_u && std::abs(f.gu) > held * size * scale_u) || (holds_v && std::abs(f.gv) > held * size * scale_v);
     Step step(f, at, holds_u, holds_v);
     double to_u = std::clamp(u + step.u, part.u0, part.u1), to_v = std::clamp(v + step.v, part.v0, part.v1);
-    const double moved = std::hypot((to_u - u) * scale_u, (to_v - v) * scale_v);
-    const double bend = std::hypot(length(at.duu) * (to_u - u) * (to_u - u), length(at.dvv) * (to_v - v) * (to_v - v));
+    const double step_u = std::abs(to_u - u), step_v = std::abs(to_v - v);
+    const double moved = step_u * scale_u + step_v * scale_v;
+    const double bend = length(at.duu) * step_u * step_u + length(at.dvv) * step_v * step_v;
     const double reach = std::max(scale_u * (part.u1 - part.u0), scale_v * (part.v1 - part.v0));
     const bool is_last = moved <= last_step * reach && bend <= last_step * reach;
     if (is_last || k == max_steps) {

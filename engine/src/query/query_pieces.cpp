@@ -111,6 +111,9 @@ Status QueryPieces::build(const SetView& set, const SceneFrame& frame, const Exe
   if (Status status = parallel_for(count, patches_per_task, execution, make); !status.ok()) return status;
   pieces_.clear(), curves_.clear();
   std::vector<ItemBoxes> boxes, curve_boxes;
+  std::size_t piece_count = 0, curve_count = 0;
+  for (const PatchItems& items : made) piece_count += items.pieces.size(), curve_count += items.curves.size();
+  pieces_.reserve(piece_count), curves_.reserve(curve_count), boxes.reserve(piece_count + curve_count);
   for (std::size_t task = 0; task < made.size(); ++task) {
     const std::size_t end = std::min(count, (task + 1) * patches_per_task);
     for (std::size_t k = task * patches_per_task; k < end; ++k) {

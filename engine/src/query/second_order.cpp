@@ -11,7 +11,7 @@ constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// CAGD, 5th ed., eqs. 5.2 and 5.23). `Fixed` is the degree if the compiler knows it, else 0.
 template <int Fixed>
 struct SecondBasis {
-  using Values = std::array<double, at(Fixed ? Fixed : max_degree) + 1>;
+  using Values = std::array<double, std::size_t{max_degree} + 1>;
   int degree;
   Values value, first, second;
 
@@ -19,7 +19,7 @@ struct SecondBasis {
     const int last = Fixed ? Fixed : any_degree;
     value[0] = 1;
     for (int n = 1; n < last - 1; ++n) raise(n, t);
-    second.fill(0);
+    for (int i = 0; i <= last; ++i) second[at(i)] = 0;
     if (last > 1) {
       differ(last - 1, last - 1, first);  // of degree n - 2, by the order below
       for (int i = 0; i <= last; ++i) {
@@ -51,26 +51,38 @@ struct SecondBasis {
   }
 };
 
+/// The sums over u of a column of control points, a column after the other, and two derivatives.
+struct ColumnSums {
+  static constexpr std::size_t most = 3 * (std::size_t{max_degree} + 1);
+  double value[most], first[most], second[most];
+};
+
+/// Sums over u first: a row of control points is a run of numbers, which compilers turn into vectors.
 template <int M, int N>
 SecondOrder polynomial(const BezierPatch& patch, double u_at, double v_at, const Vec3& origin) {
   const SecondBasis<M> u(patch.degree_u(), u_at);
   const SecondBasis<N> v(patch.degree_v(), v_at);
-  SecondOrder out;
-  const Vec3* point = patch.points().data();
-  for (int i = 0; i < u.size(); ++i) {
-    Vec3 row, row_dv, row_dvv;
-    for (int j = 0; j < v.size(); ++j, ++point) {
-      const Vec3 from = *point - origin;
-      row += v.value[at(j)] * from;
-      row_dv += v.first[at(j)] * from;
-      row_dvv += v.second[at(j)] * from;
+  const std::size_t columns = at(v.size()), width = N ? 3 * (at(N) + 1) : 3 * columns;
+  double shift[ColumnSums::most];
+  for (std::size_t j = 0; j < columns; ++j)
+    shift[3 * j] = origin.x, shift[3 * j + 1] = origin.y, shift[3 * j + 2] = origin.z;
+  ColumnSums sums;
+  for (std::size_t k = 0; k < width; ++k) sums.value[k] = sums.first[k] = sums.second[k] = 0;
+  const double* row = &patch.points().data()->x;
+  for (int i = 0; i < u.size(); ++i, row += width) {
+    const double b = u.value[at(i)], b_du = u.first[at(i)], b_duu = u.second[at(i)];
+    for (std::size_t k = 0; k < width; ++k) {
+      const double from = row[k] - shift[k];
+      sums.value[k] += b * from, sums.first[k] += b_du * from, sums.second[k] += b_duu * from;
     }
-    out.position += u.value[at(i)] * row;
-    out.du += u.first[at(i)] * row;
-    out.duu += u.second[at(i)] * row;
-    out.dv += u.value[at(i)] * row_dv;
-    out.duv += u.first[at(i)] * row_dv;
-    out.dvv += u.value[at(i)] * row_dvv;
+  }
+  SecondOrder out;
+  for (std::size_t j = 0; j < columns; ++j) {
+    const auto of = [&](const double* sum) { return Vec3{sum[3 * j], sum[3 * j + 1], sum[3 * j + 2]}; };
+    const Vec3 p = of(sums.value), pu = of(sums.first);
+    out.position += v.value[j] * p, out.dv += v.first[j] * p, out.dvv += v.second[j] * p;
+    out.du += v.value[j] * pu, out.duv += v.first[j] * pu;
+    out.duu += v.value[j] * of(sums.second);
   }
   return out;
 }
