@@ -84,12 +84,12 @@ Status nearest_of(const PointScene& scene, const PointViews<T>& points, const Ne
     const PointScene::Impl& impl = impl_of(scene);
     if (Status status = impl.check_fresh(); !status.ok()) return status;
     const auto find = [&](std::size_t begin, std::size_t end) {
-      NearestSearch search(impl.set(), impl.pieces());
-      for (std::size_t k = begin; k < end; ++k) {
-        const View3<const T>& p = points.position;
+      const View3<const T>& p = points.position;
+      const auto at = [&](std::size_t k) { return Vec3{p.at(k, 0), p.at(k, 1), p.at(k, 2)}; };
+      impl.for_points(begin, end, at, [&](std::size_t k, NearestSearch& search) {
         const double reach = points.max_distance.empty() ? infinity : double(points.max_distance.at(k, 0));
-        write(impl.nearest({p.at(k, 0), p.at(k, 1), p.at(k, 2)}, reach, search), nearest, k);
-      }
+        write(impl.nearest(at(k), reach, search), nearest, k);
+      });
     };
     return parallel_for(points.position.size, PointScene::Impl::points_per_task, execution, find);
   });

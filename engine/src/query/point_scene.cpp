@@ -105,8 +105,10 @@ Status PointScene::nearest(std::span<const Vec3> points, std::span<NearestPoint>
       return {StatusCode::invalid_argument, "the largest distance must be at least 0, found " + text(max_distance)};
     if (Status status = impl_->check_fresh(); !status.ok()) return status;
     return parallel_for(points.size(), Impl::points_per_task, execution, [&](std::size_t begin, std::size_t end) {
-      NearestSearch search(impl_->set(), impl_->pieces());
-      for (std::size_t k = begin; k < end; ++k) nearest[k] = impl_->nearest(points[k], max_distance, search);
+      const auto find = [&](std::size_t k, NearestSearch& search) {
+        nearest[k] = impl_->nearest(points[k], max_distance, search);
+      };
+      impl_->for_points(begin, end, [&](std::size_t k) { return points[k]; }, find);
     });
   });
 }

@@ -1,6 +1,9 @@
 #pragma once
 // The state of a PointScene.
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <optional>
 
 #include "query/nearest_search.h"
@@ -21,7 +24,10 @@ class PointScene::Impl {
   /// Errors: stale.
   Status check_fresh() const;
 
-  static constexpr std::size_t points_per_task = 256;
+  static constexpr std::size_t points_per_task = 1024;
+  /// Calls find(k, search) for the points of a task, those that lie together one after the other.
+  template <class Position, class Find>
+  void for_points(std::size_t begin, std::size_t end, const Position& position, const Find& find) const;
   /// Finds a nearest point; `search` is of this scene.
   NearestPoint nearest(const Vec3& point, double max_distance, NearestSearch& search) const;
 
@@ -41,5 +47,31 @@ class PointScene::Impl {
   std::uint64_t revision_ = 0;
   bool ready_ = false;
 };
+
+/// Interleaves the bits of three numbers of 10 bits (Morton 1966).
+inline std::uint32_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  const auto spread = [](std::uint32_t k) {
+    k = (k | k << 16) & 0x030000ff, k = (k | k << 8) & 0x0300f00f;
+    k = (k | k << 4) & 0x030c30c3;
+    return (k | k << 2) & 0x09249249;
+  };
+  return spread(x) << 2 | spread(y) << 1 | spread(z);
+}
+
+template <class Position, class Find>
+void PointScene::Impl::for_points(std::size_t begin, std::size_t end, const Position& position, const Find& find) const {
+  constexpr double cells = 1023;
+  NearestSearch search(set_, pieces_);
+  const SceneFrame& frame = pieces_.frame();
+  const auto cell = [](double x) { return static_cast<std::uint32_t>(cells * std::clamp(0.5 + 0.5 * x, 0.0, 1.0)); };
+  std::array<std::uint64_t, points_per_task> order;  // the key, and the place
+  for (std::size_t k = begin; k < end; ++k) {
+    const Vec3 at = frame.to_scene(position(k));
+    const std::uint64_t key = is_finite(at) ? morton_key(cell(at.x), cell(at.y), cell(at.z)) : 0;
+    order[k - begin] = key << 32 | (k - begin);
+  }
+  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(end - begin));
+  for (std::size_t k = 0; k < end - begin; ++k) find(begin + (order[k] & 0xffffffff), search);
+}
 
 }}  // namespace tessera::abi_0_1
