@@ -1,0 +1,117 @@
+#include "measure/local_net.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "basis/bernstein.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// Cuts a curve of coefficients `stride` apart to [a, b] by de Casteljau's algorithm.
+template <class T>
+void cut(T* values, std::size_t count, std::size_t stride, double a, double b) {
+  if (a > 0)
+    for (std::size_t last = count - 1; last > 0; --last)
+      for (std::size_t i = 0; i < last; ++i)
+        values[i * stride] = (1 - a) * values[i * stride] + a * values[(i + 1) * stride];
+  const double to = (b - a) / (1 - a);
+  if (!(b < 1)) return;
+  for (std::size_t first = 1; first < count; ++first)
+    for (std::size_t i = count - 1; i >= first; --i)
+      values[i * stride] = (1 - to) * values[(i - 1) * stride] + to * values[i * stride];
+}
+
+template <class T>
+void cut(std::vector<T>& values, std::size_t rows, std::size_t columns, const Domain& to) {
+  for (std::size_t j = 0; j < columns; ++j) cut(&values[j], rows, columns, to.u0, to.u1);
+  for (std::size_t i = 0; i < rows; ++i) cut(&values[i * columns], columns, 1, to.v0, to.v1);
+}
+
+}  // namespace
+
+LocalNet::LocalNet(const BezierPatch& patch, const Vec3& centre, double data_error)
+    : m_(patch.degree_u()), n_(patch.degree_v()), is_rational_(patch.is_rational()), data_error_(data_error) {
+  const std::span<const Vec3> points = patch.points();
+  double largest = 0;
+  for (const double w : patch.weights()) largest = std::max(largest, w);
+  // A power of two leaves the weights' digits as they are.
+  const double scale = is_rational_ ? std::ldexp(1.0, -std::ilogb(largest)) : 1;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double w = is_rational_ ? scale * patch.weights()[k] : 1;
+    points_.push_back(w * (points[k] - centre));
+    if (is_rational_) weights_.push_back(w);
+  }
+}
+
+LocalNet LocalNet::restricted(const Domain& to) const {
+  if (to == Domain{}) return *this;
+  LocalNet net = *this;
+  cut(net.points_, count_of(m_), count_of(n_), to);
+  if (is_rational_) cut(net.weights_, count_of(m_), count_of(n_), to);
+  net.cuts_ = 1;
+  return net;
+}
+
+NetRounding LocalNet::rounding() const {
+  double least = 1, most = 1, size = 0;
+  if (is_rational_) {
+    const auto [low, high] = std::ranges::minmax_element(weights_);
+    least = *low, most = *high;
+  }
+  for (const Vec3& p : points_) size = std::max(size, length(p));
+  // Of each coefficient, passing through cuts and sums of at most m + n levels, 4 roundings each.
+  const double unit = (8 * (m_ + n_) + 32) * (1 + cuts_) * 0x1p-53;
+  const double reach = size / least;  // of |r|
+  const double position = 2 * unit * reach * (most / least) + data_error_;
+  const auto slope = [&](int degree) {
+    const double of_weights = is_rational_ ? most - least : 0;
+    return degree / least * (4 * unit * (size + reach * most) + 2 * most * data_error_ + 2 * of_weights * position) *
+           (is_rational_ ? most / least : 1);
+  };
+  return {position, slope(m_), slope(n_)};
+}
+
+LocalNet::Row LocalNet::row(double v) const {
+  Row row;
+  std::array<double, max_order> basis, slopes;
+  bernstein_values(n_, v, basis.data());
+  bernstein_derivatives(n_, v, slopes.data());
+  for (std::size_t i = 0; i < count_of(m_); ++i) {
+    row.points[i] = row.slopes[i] = {};
+    row.weights[i] = row.weight_slopes[i] = 0;
+    for (std::size_t j = 0; j < count_of(n_); ++j) {
+      row.points[i] += basis[j] * points_[index(i, j)];
+      row.slopes[i] += slopes[j] * points_[index(i, j)];
+      if (!is_rational_) continue;
+      row.weights[i] += basis[j] * weights_[index(i, j)];
+      row.weight_slopes[i] += slopes[j] * weights_[index(i, j)];
+    }
+  }
+  return row;
+}
+
+NetPoint LocalNet::at(const Row& row, double u) const {
+  std::array<double, max_order> basis, slopes;
+  bernstein_values(m_, u, basis.data());
+  bernstein_derivatives(m_, u, slopes.data());
+  NetPoint point{};
+  double w = 0, wu = 0, wv = 0;
+  for (std::size_t i = 0; i < count_of(m_); ++i) {
+    point.position += basis[i] * row.points[i];
+    point.du += slopes[i] * row.points[i];
+    point.dv += basis[i] * row.slopes[i];
+    if (!is_rational_) continue;
+    w += basis[i] * row.weights[i];
+    wu += slopes[i] * row.weights[i];
+    wv += basis[i] * row.weight_slopes[i];
+  }
+  if (!is_rational_) return point;
+  const double inverse = 1 / w;
+  point.position = inverse * point.position;
+  point.du = inverse * (point.du - wu * point.position);
+  point.dv = inverse * (point.dv - wv * point.position);
+  return point;
+}
+
+}}  // namespace tessera::abi_0_1

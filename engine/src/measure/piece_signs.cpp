@@ -1,0 +1,94 @@
+// On which side of their pieces regions are kept.
+
+#include <algorithm>
+#include <numeric>
+
+#include "measure/kept_strips.h"
+#include "trim/piece_side.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// The parity of the pieces that a ray towards larger u meets, from the middle of a piece.
+class Sweep {
+ public:
+  explicit Sweep(const std::vector<TrimPiece>& pieces) : pieces_(pieces), by_start_(pieces.size()) {
+    std::iota(by_start_.begin(), by_start_.end(), std::size_t{0});
+    std::ranges::sort(by_start_, {}, [&](std::size_t k) { return std::pair(pieces[k].lower_v(), k); });
+  }
+
+  /// `starts_inside`: whether points that no piece encloses are kept.
+  PieceSigns run(bool starts_inside) {
+    PieceSigns found;
+    found.signs.assign(pieces_.size(), 0);
+    std::vector<ParameterPoint> middles;
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      middles.push_back(relative_point(pieces_[k].curve, {0, 0}, 0.5));
+      if (pieces_[k].lower_v() < pieces_[k].upper_v()) order.push_back(k);
+    }
+    std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(middles[k].v, k); });
+    for (const std::size_t k : order) {
+      advance(middles[k].v);
+      bool is_kept_right = starts_inside;
+      for (const std::size_t other : active_) {
+        if (other == k) continue;
+        const PieceSide side = side_of(pieces_[other], middles[k]);
+        if (side == PieceSide::near) found.is_certain = false;
+        is_kept_right ^= side == PieceSide::left || (side == PieceSide::near && other > k);
+      }
+      found.signs[k] = is_kept_right ? -1 : 1;
+    }
+    return found;
+  }
+
+ private:
+  /// Lists the pieces that have a point at this height, and perhaps others.
+  void advance(double v) {
+    for (; next_ < by_start_.size() && pieces_[by_start_[next_]].lower_v() <= v; ++next_)
+      active_.push_back(by_start_[next_]);
+    std::erase_if(active_, [&](std::size_t k) { return pieces_[k].upper_v() < v; });
+  }
+
+  const std::vector<TrimPiece>& pieces_;
+  std::vector<std::size_t> by_start_, active_;
+  std::size_t next_ = 0;
+};
+
+ParameterPoint exchanged(const ParameterPoint& p) { return {p.v, p.u}; }
+
+/// Pieces with u and v exchanged.
+std::vector<TrimPiece> exchanged(std::vector<TrimPiece> pieces) {
+  for (TrimPiece& piece : pieces) {
+    for (ParameterPoint& point : piece.curve.points) point = exchanged(point);
+    piece.line_from = exchanged(piece.line_from), piece.line_to = exchanged(piece.line_to);
+    piece.error = exchanged(piece.error);
+  }
+  return pieces;
+}
+
+/// Adds what pieces tell of their loops. `left`: on which side of a piece with growing v smaller u lies, 1 or -1.
+void vote(const std::vector<TrimPiece>& pieces, bool starts_inside, int left, std::vector<int>& votes) {
+  const PieceSigns found = piece_signs(pieces, starts_inside);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (pieces[k].loop >= votes.size()) continue;
+    votes[pieces[k].loop] += left * found.signs[k] * (pieces[k].start().v < pieces[k].end().v ? 1 : -1);
+  }
+}
+
+}  // namespace
+
+PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside) {
+  return Sweep(pieces).run(starts_inside);
+}
+
+std::vector<std::int8_t> loop_directions(const TrimRegion::Impl& region, std::size_t loops) {
+  std::vector<int> votes(loops, 0);
+  vote(region.pieces, region.starts_inside, 1, votes);
+  vote(exchanged(region.pieces), region.starts_inside, -1, votes);
+  std::vector<std::int8_t> directions;
+  for (const int sum : votes) directions.push_back(static_cast<std::int8_t>(sum > 0 ? 1 : sum < 0 ? -1 : 0));
+  return directions;
+}
+
+}}  // namespace tessera::abi_0_1
