@@ -52,7 +52,7 @@ struct MeasureOptions {
   double accuracy = 1e-10;
   /// How many parts a patch, or the strip beside a piece of a loop, is divided into at most; at least 1. Where they do
   /// not suffice, as may be where a normal vanishes along a curve, errors are larger than asked for.
-  std::size_t max_cells = 2048;
+  std::size_t max_cells = 4096;
 };
 
 /// The measures of one surface, as its loops trim it, or of several together.

@@ -42,6 +42,25 @@ LocalCurvePoint LocalCurve::at(double t) const {
   return {start_.u + pu / pw, start_.v + pv / pw, (du - pu / pw * dw) / pw, (dv - pv / pw * dw) / pw};
 }
 
+LocalCurve::Slopes LocalCurve::slopes() const {
+  // C' = (A' - C W') / W with C relative to the start, which monotone curves leave by no more than to their end.
+  const auto n = static_cast<std::size_t>(degree_);
+  double least = w_[0], most = w_[0], weight_slope = 0;
+  for (std::size_t i = 1; i <= n; ++i) {
+    least = std::min(least, w_[i]), most = std::max(most, w_[i]);
+    weight_slope = std::max(weight_slope, std::abs(w_[i] - w_[i - 1]));
+  }
+  const auto range = [&](const Values& values, double reach) {
+    double low = values[1] - values[0], high = low;
+    for (std::size_t i = 1; i < n; ++i)
+      low = std::min(low, values[i + 1] - values[i]), high = std::max(high, values[i + 1] - values[i]);
+    const double slack = std::abs(reach) * weight_slope + 0x1p-48 * (std::abs(reach) + std::abs(low) + std::abs(high));
+    low = degree_ * (low - slack), high = degree_ * (high + slack);
+    return ScalarRange{low / (low < 0 ? least : most), high / (high > 0 ? least : most)};
+  };
+  return {range(u_, end_.u - start_.u), range(v_, end_.v - start_.v)};
+}
+
 std::pair<LocalCurve, LocalCurve> LocalCurve::halves() const {
   LocalCurve left = *this, right = *this;
   const auto n = static_cast<std::size_t>(degree_);

@@ -1,7 +1,9 @@
 #pragma once
 // A monotone curve in the parameters of one patch, and bounds of it at complex arguments.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "measure/centred_power.h"
@@ -9,6 +11,13 @@
 #include "trim/plane_bezier.h"
 
 namespace tessera { inline namespace abi_0_1 {
+
+/// Numbers between two ends.
+struct ScalarRange {
+  double lower, upper;
+  bool has_zero() const { return lower <= 0 && upper >= 0; }
+  double magnitude() const { return std::max(std::abs(lower), std::abs(upper)); }
+};
 
 /// A point of a curve and the derivatives by its parameter.
 struct LocalCurvePoint {
@@ -30,6 +39,11 @@ class LocalCurve {
   double rounding() const { return rounding_; }
   LocalCurvePoint at(double t) const;
   std::pair<LocalCurve, LocalCurve> halves() const;
+  /// Ranges of the derivatives.
+  struct Slopes {
+    ScalarRange u, v;
+  };
+  Slopes slopes() const;
 
  private:
   friend class CurveSeries;

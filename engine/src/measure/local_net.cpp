@@ -22,13 +22,16 @@ void cut(T* values, std::size_t count, std::size_t stride, double a, double b) {
       values[i * stride] = (1 - to) * values[(i - 1) * stride] + to * values[i * stride];
 }
 
+}  // namespace
+
 template <class T>
-void cut(std::vector<T>& values, std::size_t rows, std::size_t columns, const Domain& to) {
+void cut_net(std::vector<T>& values, int degree_u, int degree_v, const Domain& to) {
+  const std::size_t rows = count_of(degree_u), columns = count_of(degree_v);
   for (std::size_t j = 0; j < columns; ++j) cut(&values[j], rows, columns, to.u0, to.u1);
   for (std::size_t i = 0; i < rows; ++i) cut(&values[i * columns], columns, 1, to.v0, to.v1);
 }
-
-}  // namespace
+template void cut_net(std::vector<double>&, int, int, const Domain&);
+template void cut_net(std::vector<Vec3>&, int, int, const Domain&);
 
 LocalNet::LocalNet(const BezierPatch& patch, const Vec3& centre, double data_error)
     : m_(patch.degree_u()), n_(patch.degree_v()), is_rational_(patch.is_rational()), data_error_(data_error) {
@@ -47,8 +50,8 @@ LocalNet::LocalNet(const BezierPatch& patch, const Vec3& centre, double data_err
 LocalNet LocalNet::restricted(const Domain& to) const {
   if (to == Domain{}) return *this;
   LocalNet net = *this;
-  cut(net.points_, count_of(m_), count_of(n_), to);
-  if (is_rational_) cut(net.weights_, count_of(m_), count_of(n_), to);
+  cut_net(net.points_, m_, n_, to);
+  if (is_rational_) cut_net(net.weights_, m_, n_, to);
   net.cuts_ = 1;
   return net;
 }

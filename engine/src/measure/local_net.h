@@ -10,6 +10,10 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
+/// Cuts a net [i][j] of numbers or points to a rectangle within [0, 1]^2 by de Casteljau's algorithm.
+template <class T>
+void cut_net(std::vector<T>& values, int degree_u, int degree_v, const Domain& to);
+
 /// A point of a patch and the derivatives by its parameters.
 struct NetPoint {
   Vec3 position, du, dv;
@@ -67,6 +71,8 @@ class NetSeries {
   /// Returns a bound of the root of (r_u x r_v)^2 in a simply connected region in which the square does not vanish,
   /// where the root is analytic therefore. Infinite if that is not proven.
   double normal(double reach_u, double reach_v) const;
+  /// Returns a bound of |r_u x r_v| for real parameters.
+  double real_normal() const;
   /// The point of the middle, relative to the net's centre.
   const Vec3& middle() const { return middle_; }
   /// How far normals are from that of the middle along u alone, and along v: not a bound.
@@ -79,6 +85,8 @@ class NetSeries {
   static Powers powers(double reach_u, double reach_v, int degree_u, int degree_v);
   /// The least |w|, or nothing above 0.
   double least_weight(const Powers& powers) const;
+  /// How far w^3 r_u x r_v is from that of the middle at most, where |w| is at least `least`.
+  double turn(double reach_u, double reach_v, double least) const;
   void bound_hull(const LocalNet& net);
   void make_normals(const std::vector<Vec3>& points, const std::vector<double>& weights);
 

@@ -170,21 +170,30 @@ NetSeries::Sizes NetSeries::sizes(double reach_u, double reach_v) const {
   return {std::min(size.position, real_.position), std::min(size.du, real_.du), std::min(size.dv, real_.dv)};
 }
 
-double NetSeries::normal(double reach_u, double reach_v) const {
-  const double least = least_weight(powers(reach_u, reach_v, m_, n_));
-  if (!(least > 0)) return infinity;
+double NetSeries::turn(double reach_u, double reach_v, double least) const {
   const Powers p = powers(reach_u, reach_v, mn_, nn_);
-  double turn = 0;
+  double sum = 0;
   for (std::size_t i = 0; i < count_of(mn_); ++i)
-    for (std::size_t j = 0; j < count_of(nn_); ++j) turn += normals_[i * count_of(nn_) + j] * p.u[i] * p.v[j];
-  const double middle = normals_[0];
-  turn = turn * (1 + 0x1p-30) - middle;
+    for (std::size_t j = 0; j < count_of(nn_); ++j) sum += normals_[i * count_of(nn_) + j] * p.u[i] * p.v[j];
   // Products and sums of the coefficients are rounded: a share of what they would be if nothing cancelled.
   const Sizes size = sizes(reach_u, reach_v);
   const double weight = weights_.empty() ? 1 : 2 * weights_[0] - least;
-  turn += 0x1p-44 * 0.25 * size.du * size.dv * weight * weight * weight;
-  if (!(2 * middle * turn + turn * turn < 0.99 * middle * middle)) return infinity;
-  return 4 * (middle + turn) / (least * least * least);
+  return sum * (1 + 0x1p-30) - normals_[0] + 0x1p-44 * 0.25 * size.du * size.dv * weight * weight * weight;
+}
+
+double NetSeries::normal(double reach_u, double reach_v) const {
+  const double least = least_weight(powers(reach_u, reach_v, m_, n_));
+  if (!(least > 0)) return infinity;
+  const double middle = normals_[0], by = turn(reach_u, reach_v, least);
+  if (!(2 * middle * by + by * by < 0.99 * middle * middle)) return infinity;
+  return 4 * (middle + by) / (least * least * least);
+}
+
+double NetSeries::real_normal() const {
+  const Sizes size = sizes(1, 1);
+  const double least = least_weight(powers(1, 1, m_, n_));
+  if (!(least > 0)) return size.du * size.dv;
+  return std::min(size.du * size.dv, 4 * (normals_[0] + turn(1, 1, least)) / (least * least * least));
 }
 
 double NetSeries::normal_turn(bool along_u) const {

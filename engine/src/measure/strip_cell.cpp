@@ -30,6 +30,7 @@ StripCell::StripCell(const StripPatch& patch, const Strip& strip, const StripSqu
   series_.emplace(*net_, integrand == Integrand::area);
   curve_.emplace(square_.curve);
   real_ = integrand_bound(1, 1);
+  if (integrand == Integrand::area) real_.value = bound_slack * series_->real_normal() / (4 * half_u_ * half_v_);
   magnitude_ = real_.value * parameter_area_;
 }
 
@@ -89,9 +90,15 @@ StripCell::Choice StripCell::choose(bool along_s, double tolerance) const {
 }
 
 bool StripCell::is_longer_along_s() const {
-  if (integrand_ == Integrand::area) return series_->normal_turn(true) >= series_->normal_turn(false);
   const NetSeries::Sizes size = series_->sizes(1, 1);
-  return size.du >= size.dv;
+  const bool is_area = integrand_ == Integrand::area;
+  const double along_u = is_area ? series_->normal_turn(true) : size.du,
+               along_v = is_area ? series_->normal_turn(false) : size.dv;
+  // The window's width comes from s, and from t where the curve moves in u.
+  const double from = square_.curve.start().u, to = square_.curve.end().u, base = strip_.base;
+  const double by_s = (square_.s1 - square_.s0) * std::max(std::abs(from - base), std::abs(to - base));
+  const double by_t = 0.5 * (square_.s0 + square_.s1) * std::abs(to - from);
+  return along_u * by_s >= along_u * by_t + along_v * 2 * half_u_;
 }
 
 std::optional<StripCell::Found> StripCell::integrate(double tolerance) {
