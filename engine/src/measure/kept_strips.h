@@ -35,6 +35,6 @@ struct KeptStrips {
 KeptStrips kept_strips(const TrimRegion::Impl& region, const ParameterPoint& loop_error);
 
 /// Returns the strip that is all of a patch.
-inline Strip whole_strip() { return {.curve = LocalCurve({1, 0}, {1, 1})}; }
+inline Strip whole_strip() { return {LocalCurve({1, 0}, {1, 1}), 0, 1, {}, true}; }
 
 }}  // namespace tessera::abi_0_1

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "basis/bernstein.h"
 
@@ -57,22 +58,35 @@ LocalNet LocalNet::restricted(const Domain& to) const {
 }
 
 NetRounding LocalNet::rounding() const {
-  double least = 1, most = 1, size = 0;
+  double least = 1, most = 1, reach = 0;
   if (is_rational_) {
     const auto [low, high] = std::ranges::minmax_element(weights_);
     least = *low, most = *high;
   }
-  for (const Vec3& p : points_) size = std::max(size, length(p));
-  // Of each coefficient, passing through cuts and sums of at most m + n levels, 4 roundings each.
-  const double unit = (8 * (m_ + n_) + 32) * (1 + cuts_) * 0x1p-53;
-  const double reach = size / least;  // of |r|
-  const double position = 2 * unit * reach * (most / least) + data_error_;
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    reach = std::max(reach, length(points_[k]) / (is_rational_ ? weights_[k] : 1));
+  // Weights are positive, so w P passes cuts and sums of at most m + n levels, 4 roundings each, with an error that is
+  // a share of w times the largest |P|. Differences of neighbours lose what their weights differ by.
+  const double unit = (8 * (m_ + n_) + 32) * (1 + cuts_) * 0x1p-53, ratio = most / least;
+  const double position = 2 * unit * reach + data_error_;
   const auto slope = [&](int degree) {
-    const double of_weights = is_rational_ ? most - least : 0;
-    return degree / least * (4 * unit * (size + reach * most) + 2 * most * data_error_ + 2 * of_weights * position) *
-           (is_rational_ ? most / least : 1);
+    return degree * (ratio * (12 * unit * reach + 2 * data_error_) + 2 * (ratio - 1) * position);
   };
   return {position, slope(m_), slope(n_)};
+}
+
+double LocalNet::weight_ratio(bool along_u) const {
+  double most = 1;
+  if (!is_rational_) return most;
+  for (std::size_t a = 0; a < count_of(along_u ? n_ : m_); ++a) {
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+    for (std::size_t b = 0; b < count_of(along_u ? m_ : n_); ++b) {
+      const double w = weights_[along_u ? index(b, a) : index(a, b)];
+      low = std::min(low, w), high = std::max(high, w);
+    }
+    most = std::max(most, high / low);
+  }
+  return most;
 }
 
 LocalNet::Row LocalNet::row(double v) const {

@@ -36,6 +36,8 @@ class LocalNet {
   int degree_v() const { return n_; }
   bool is_rational() const { return is_rational_; }
   NetRounding rounding() const;
+  /// The largest ratio of two weights of a row along u, or along v.
+  double weight_ratio(bool along_u) const;
 
   /// The curve of the net along u at one v, and its derivative by v.
   struct Row {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "measure/gauss_rule.h"
 
@@ -92,8 +93,11 @@ StripCell::Choice StripCell::choose(bool along_s, double tolerance) const {
 bool StripCell::is_longer_along_s() const {
   const NetSeries::Sizes size = series_->sizes(1, 1);
   const bool is_area = integrand_ == Integrand::area;
-  const double along_u = is_area ? series_->normal_turn(true) : size.du,
-               along_v = is_area ? series_->normal_turn(false) : size.dv;
+  double along_u = is_area ? series_->normal_turn(true) : size.du,
+         along_v = is_area ? series_->normal_turn(false) : size.dv;
+  constexpr double far_apart = 1.5;  // weights whose ratio is larger hide all else
+  const double ratio_u = net_->weight_ratio(true), ratio_v = net_->weight_ratio(false);
+  if (std::max(ratio_u, ratio_v) > far_apart) along_u = ratio_u - 1, along_v = ratio_v - 1;
   // The window's width comes from s, and from t where the curve moves in u.
   const double from = square_.curve.start().u, to = square_.curve.end().u, base = strip_.base;
   const double by_s = (square_.s1 - square_.s0) * std::max(std::abs(from - base), std::abs(to - base));
@@ -105,6 +109,9 @@ std::optional<StripCell::Found> StripCell::integrate(double tolerance) {
   const Choice s = choose(true, 0.5 * tolerance), t = choose(false, 0.5 * tolerance);
   const bool both = (s.nodes == 0) == (t.nodes == 0);
   splits_s_ = both ? is_longer_along_s() : s.nodes == 0;
+  // A half that still has half of the bound was cut in a direction that does not matter.
+  if (both && magnitude_ > 0.45 * square_.whole_magnitude && square_.whole_magnitude > 0)
+    splits_s_ = !square_.is_half_in_s;
   if (s.nodes == 0 || t.nodes == 0) return {};
   Found found;
   Integrals& all = found.integrals;
@@ -115,6 +122,7 @@ std::optional<StripCell::Found> StripCell::integrate(double tolerance) {
         bound_slack * (s.error * power(s.position, degree) + t.error * power(t.position, degree));
   }
   add_rounding(all);
+  if (!std::isfinite(all.error[0])) return {};  // the weight may vanish a quarter of the window farther on
   return found;
 }
 
@@ -127,11 +135,12 @@ double StripCell::sum(int nodes_s, int nodes_t, Integrals& all) const {
   double magnitude = 0;
   for (std::size_t j = 0; j < static_cast<std::size_t>(nodes_t); ++j) {
     const LocalCurvePoint at = square_.curve.at(along_t.nodes[j]);
-    const LocalNet::Row row = net_->row((at.v - window_.v0) / dv);
-    const double scale = direction * along_t.weights[j] * width * (at.u - base) * at.dv / (du * dv);
+    const LocalNet::Row row = net_->row(strip_.is_whole ? along_t.nodes[j] : (at.v - window_.v0) / dv);
+    const double jacobian = strip_.is_whole ? 1 : direction * width * (at.u - base) * at.dv / (du * dv);
+    const double scale = along_t.weights[j] * jacobian;
     for (std::size_t i = 0; i < static_cast<std::size_t>(nodes_s); ++i) {
       const double u = base + (square_.s0 + along_s.nodes[i] * width) * (at.u - base);
-      const NetPoint point = net_->at(row, (u - window_.u0) / du);
+      const NetPoint point = net_->at(row, strip_.is_whole ? along_s.nodes[i] : (u - window_.u0) / du);
       const Vec3 r = patch_.centre + point.position, normal = cross(point.du, point.dv);
       const double value = integrand_ == Integrand::area ? length(normal) : dot(r, normal);
       const double weighted = scale * along_s.weights[i] * value;
@@ -156,7 +165,7 @@ void StripCell::add_rounding(Integrals& to) const {
   // Nodes, weights, the window and the curve are rounded: the integrand's derivatives follow from its bound a quarter
   // of the window farther on (Cauchy), the Jacobian's error from its factors.
   const Bound near = integrand_bound(1.25, 1.25);
-  const double curve = square_.curve.rounding() + 8 * unit;
+  const double curve = strip_.is_whole ? 0 : square_.curve.rounding() + 8 * unit;
   const double at_nodes = near.value * 8 * (curve / half_u_ + curve / half_v_ + 16 * unit) * parameter_area_;
   const double steps = static_cast<double>(8 * square_.curve.degree() + 64) * unit;
   const double jacobian = near.value * (steps * parameter_area_ + curve * 4 * (half_u_ + half_v_) + curve * curve);
@@ -184,12 +193,15 @@ Integrals StripCell::crude() const {
 }
 
 std::pair<StripSquare, StripSquare> StripCell::halves() const {
+  StripSquare first = square_, second = square_;
   if (splits_s_) {
-    const double middle = 0.5 * (square_.s0 + square_.s1);
-    return {{square_.curve, square_.s0, middle}, {square_.curve, middle, square_.s1}};
+    first.s1 = second.s0 = 0.5 * (square_.s0 + square_.s1);
+  } else {
+    std::tie(first.curve, second.curve) = square_.curve.halves();
   }
-  auto [left, right] = square_.curve.halves();
-  return {{std::move(left), square_.s0, square_.s1}, {std::move(right), square_.s0, square_.s1}};
+  first.whole_magnitude = second.whole_magnitude = magnitude_;
+  first.is_half_in_s = second.is_half_in_s = splits_s_;
+  return {std::move(first), std::move(second)};
 }
 
 void add_band(const StripPatch& patch, const Strip& strip, Integrand integrand, ExactSums& sums) {

@@ -12,6 +12,9 @@ namespace tessera { inline namespace abi_0_1 {
 struct StripSquare {
   LocalCurve curve;
   double s0 = 0, s1 = 1;
+  /// Of a half: StripCell::magnitude() of both together, and whether they are halves in s.
+  double whole_magnitude = 0;
+  bool is_half_in_s = false;
 };
 
 class StripCell {
