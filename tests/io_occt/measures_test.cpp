@@ -46,9 +46,7 @@ struct Differences {
   double ours = 0, theirs = 0;  ///< seconds
 };
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void compare_areas(const std::string& file, const TopoDS_Shape& shape, const Model& model, Differences& all) {
   double start = seconds();
@@ -74,7 +72,8 @@ void compare_areas(const std::string& file, const TopoDS_Shape& shape, const Mod
     const double difference = std::abs(ours.value - area);
     all.area = std::max(all.area, difference / found->total.area.value);
     if (ours.error > 1e-6 * ours.value)
-      std::printf("%s: face %zu: area %.10g +- %.2g, theirs %.10g LARGE %d\n", file.c_str(), k, ours.value, ours.error, area, found->surfaces[k].proven);
+      std::printf("%s: face %zu: area %.10g +- %.2g, theirs %.10g LARGE %d\n", file.c_str(), k, ours.value, ours.error,
+                  area, found->surfaces[k].proven);
     if (difference <= ours.error + 1e-7 * area) continue;
     ++all.beyond;
     std::printf("%s: face %zu: area %.10g +- %.2g, theirs %.10g\n", file.c_str(), k, ours.value, ours.error, area);
@@ -111,7 +110,9 @@ void compare(const std::string& file, Differences& all) {
     const double volume = std::abs(nearest->volume - body.volume.value);
     const double centroid = max_abs(nearest->centroid - body.centroid.value);
     all.volume = std::max(all.volume, volume / nearest->volume);
-    if (body.volume.error > 1e-6 * body.volume.value) std::printf("%s: solid: volume %.10g +- %.2g, gap %.2g theirs %.10g; LARGE\n", file.c_str(), body.volume.value, body.volume.error, body.gap, nearest->volume);
+    if (body.volume.error > 1e-6 * body.volume.value)
+      std::printf("%s: solid: volume %.10g +- %.2g, gap %.2g theirs %.10g; LARGE\n", file.c_str(), body.volume.value,
+                  body.volume.error, body.gap, nearest->volume);
     all.centroid = std::max(all.centroid, centroid / size);
     if (volume <= body.volume.error + 1e-7 * nearest->volume && centroid <= body.centroid.error + 1e-7 * size) continue;
     ++all.beyond;
@@ -125,9 +126,10 @@ TEST(Measures, OfRealFilesAreThoseOfOpenCascade) {
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   Differences all;
   for (const std::filesystem::path& path : files) compare(path.string(), all);
-  std::printf("%zu files, %zu faces, %zu solids: largest difference of area %.2e, volume %.2e, centroid %.2e; "
-              "%.2f s, theirs %.2f s; %zu beyond their bounds\n",
-              all.files, all.faces, all.solids, all.area, all.volume, all.centroid, all.ours, all.theirs, all.beyond);
+  std::printf(
+      "%zu files, %zu faces, %zu solids: largest difference of area %.2e, volume %.2e, centroid %.2e; "
+      "%.2f s, theirs %.2f s; %zu beyond their bounds\n",
+      all.files, all.faces, all.solids, all.area, all.volume, all.centroid, all.ours, all.theirs, all.beyond);
   EXPECT_EQ(all.beyond, 0u);
 }
 

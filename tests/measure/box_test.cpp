@@ -31,8 +31,9 @@ TEST(TightBox, OfEllipsoidsTurnedAnyWay) {
   const Vec3 size{1, 2.5, 0.25};
   for (int k = 0; k < 12; ++k) {
     const Affine map = Affine::translated({double(k), -100, 0}) * Affine::rotated({1, double(k), 2}, 0.3 * k);
-    const QuadricPiece of = piece(quadric({1 / (size.x * size.x), 1 / (size.y * size.y), 1 / (size.z * size.z), 0, 0, 0, 0, 0, 0, -1}),
-                                  {-pi, pi, -pi / 2, pi / 2});
+    const QuadricPiece of =
+        piece(quadric({1 / (size.x * size.x), 1 / (size.y * size.y), 1 / (size.z * size.z), 0, 0, 0, 0, 0, 0, -1}),
+              {-pi, pi, -pi / 2, pi / 2});
     const Vec3 x = size.x * map.columns[0], y = size.y * map.columns[1], z = size.z * map.columns[2];
     const Vec3 reach{std::hypot(x.x, y.x, z.x), std::hypot(x.y, y.y, z.y), std::hypot(x.z, y.z, z.z)};
     const Vec3 at = map.point({});

@@ -35,12 +35,8 @@ ModelSurface plane(double size, const Affine& map, const std::vector<TrimLoop>& 
   return of;
 }
 /// A disc of the plane z = 0.
-ModelSurface disc(double radius, const Affine& map) {
-  return plane(radius, map, {circle({0.5, 0.5}, 0.5)});
-}
-Affine turned_over() {
-  return Affine::rotated({1, 0, 0}, pi);
-}
+ModelSurface disc(double radius, const Affine& map) { return plane(radius, map, {circle({0.5, 0.5}, 0.5)}); }
+Affine turned_over() { return Affine::rotated({1, 0, 0}, pi); }
 
 /// A torus of revolution as a rational biquadratic.
 Surface torus(double major, double minor) {
@@ -107,7 +103,8 @@ TEST(ClosedForm, TheTorus) {
   const double volume = 2 * pi * pi * major * minor * minor;
   expect_measured(body.volume, volume, 1e-9, "volume");
   expect_measured({body.inertia.zz, body.inertia.error}, volume * (major * major + 0.75 * minor * minor), 1e-8, "zz");
-  expect_measured({body.inertia.xx, body.inertia.error}, volume * (0.5 * major * major + 0.625 * minor * minor), 1e-8, "xx");
+  expect_measured({body.inertia.xx, body.inertia.error}, volume * (0.5 * major * major + 0.625 * minor * minor), 1e-8,
+                  "xx");
 }
 
 TEST(ClosedForm, SidesOfConesCylindersAndParaboloids) {
@@ -160,7 +157,8 @@ TEST(ClosedForm, ABoxWithAHole) {
   for (int k = 0; k < 4; ++k) {
     const Affine turn = Affine::rotated({0, 0, 1}, k * pi / 2);
     std::vector<Vec3> corners;
-    for (const Vec3& p : {Vec3{1, -1, 0}, Vec3{1, -1, 3}, Vec3{1, 1, 0}, Vec3{1, 1, 3}}) corners.push_back(turn.point(p));
+    for (const Vec3& p : {Vec3{1, -1, 0}, Vec3{1, -1, 3}, Vec3{1, 1, 0}, Vec3{1, 1, 3}})
+      corners.push_back(turn.point(p));
     body.push_back(placed_surface(polynomial(1, 1, corners)));
   }
   body.push_back(placed_surface(cylinder(r, 3), Affine::scaled({1, -1, 1})));

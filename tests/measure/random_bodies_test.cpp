@@ -61,8 +61,7 @@ TEST(RandomBodies, BoundsHoldForWeightsFarApart) {
     std::vector<BezierPatch> cones = cone_over(heavy, points[4]);
     cones.erase(cones.begin());
     const double truth = value_of(measure_surfaces(model_of(surfaces_of(cones)))).total.area.value;
-    const Measured area =
-        value_of(measure_surfaces(model_of(surfaces_of({heavy})), {.max_cells = 20000})).total.area;
+    const Measured area = value_of(measure_surfaces(model_of(surfaces_of({heavy})), {.max_cells = 20000})).total.area;
     EXPECT_LE(std::abs(area.value - truth), area.error + 1e-6 * truth) << trial;
     EXPECT_LE(area.error, truth) << trial;
     // Volumes: the body is that of the cones in place of the patch, turned round.
@@ -101,8 +100,8 @@ TEST(RandomBodies, PatchesWithoutAreaHaveNone) {
   Random random(14);
   const Vec3 at = uniform_vector(random, -1, 1);
   const std::vector<BezierPatch> patches{
-      polynomial(3, 3, std::vector<Vec3>(16, at)),                                     // a point
-      polynomial(1, 1, {{0, 0, 0}, {1, 2, 3}, {0, 0, 0}, {1, 2, 3}}),                  // a line
+      polynomial(3, 3, std::vector<Vec3>(16, at)),                                            // a point
+      polynomial(1, 1, {{0, 0, 0}, {1, 2, 3}, {0, 0, 0}, {1, 2, 3}}),                         // a line
       polynomial(2, 1, {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {0, 0, 0}, {0, 0, 1}})};  // there and back
   const AreaMeasures found = value_of(measure_surfaces(model_of(surfaces_of(patches))));
   for (std::size_t k = 0; k < 2; ++k) {
@@ -127,8 +126,9 @@ TEST(RandomBodies, PolesAndCusps) {
   expect_measured(found.area, std::numbers::pi / 4, 1e-9, "quarter of a disc");
   expect_point(found.centroid, {4 / (3 * std::numbers::pi), 4 / (3 * std::numbers::pi), 0}, 1e-8, "quarter of a disc");
   // A cuspidal edge: (t^2, t^3) along u is a cusp in the middle, swept along v. Its length from t = 0 to 1/2 doubled.
-  const std::vector<Vec3> cusp{{0.25, -0.125, 0}, {0.25, -0.125, 1},  {-0.25 / 3, 0.125, 0},  {-0.25 / 3, 0.125, 1},
-                               {-0.25 / 3, -0.125, 0}, {-0.25 / 3, -0.125, 1}, {0.25, 0.125, 0}, {0.25, 0.125, 1}};
+  const std::vector<Vec3> cusp{{0.25, -0.125, 0},     {0.25, -0.125, 1},      {-0.25 / 3, 0.125, 0},
+                               {-0.25 / 3, 0.125, 1}, {-0.25 / 3, -0.125, 0}, {-0.25 / 3, -0.125, 1},
+                               {0.25, 0.125, 0},      {0.25, 0.125, 1}};
   const Measured area = value_of(measure_surfaces(model_of(surfaces_of({polynomial(3, 1, cusp)})))).total.area;
   const double half = (std::pow(4 + 9 * 0.25, 1.5) - 8) / 27;
   EXPECT_NEAR(area.value, 2 * half, area.error + 1e-15);

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <vector>
 
-#include "measure/measure_bodies.h"
 #include "join/unjoined_faces.h"
+#include "measure/measure_bodies.h"
 #include "tessera/topology.h"
 
 namespace tessera::test { namespace {
@@ -32,8 +32,7 @@ void add_box(Shape& shape, const Vec3& lower, const Vec3& upper, unsigned turned
       if (shape.edges[k].start == first_vertex + from && shape.edges[k].end == first_vertex + to) return {k, false};
       if (shape.edges[k].start == first_vertex + to && shape.edges[k].end == first_vertex + from) return {k, true};
     }
-    shape.edges.push_back(
-        {first_vertex + from, first_vertex + to, {0, 1}, space_line(corner(from), corner(to)), 1e-7});
+    shape.edges.push_back({first_vertex + from, first_vertex + to, {0, 1}, space_line(corner(from), corner(to)), 1e-7});
     return {static_cast<std::uint32_t>(shape.edges.size() - 1), false};
   };
   Shell shell{{}, 0};
@@ -174,8 +173,8 @@ TEST(Solids, AnyNumberOfThreadsGivesTheSameBytes) {
       const BodyMeasures found = value_of(measure_enclosed(body));
       const AreaMeasures area = value_of(measure_surfaces(model));
       const MeasuredBox box = value_of(measure_box(model));
-      const std::vector<double> numbers{found.volume.value,   found.volume.error,    found.centroid.value.x,
-                                        found.inertia.xy,     found.inertia.error,   area.total.area.value,
+      const std::vector<double> numbers{found.volume.value,    found.volume.error,          found.centroid.value.x,
+                                        found.inertia.xy,      found.inertia.error,         area.total.area.value,
                                         area.total.area.error, area.total.centroid.value.z, box.box.lower.x,
                                         box.upper_error.z};
       if (first.empty()) first = numbers;

@@ -85,6 +85,11 @@ void fill_commands(Table& table) {
   for (const char* const camera : {"1,2,3", "1,2,3,4,5,6,x", "1,2,3,4,5,6,nan", "0,0,0,1e999,0,0,40", "1,2,3,1,2,3,40",
                                    "1,2,3,4,5,6,0", "1,2,3,4,5,6,180", "1e19,0,0,0,0,0,40"})
     tool.row(2, {"raycast", "teapot.bpt", "-o", "a.png", "--camera", camera});
+  table.of("tessera measure MODEL");
+  tool.row(2, {"measure"});
+  for (const char* const accuracy : {"0", "-1", "nan", "1e-15", "1", "x"})
+    tool.row(2, {"measure", "teapot.bpt", "--accuracy", accuracy});
+  tool.row(1, {"measure", "teapot.bpt", "--require-solids"});
 }
 
 void fill_model_commands(Table& table) {
@@ -107,6 +112,7 @@ void fill_model_commands(Table& table) {
   tool.row(1, {"raycast", "huge.bpt", "-o", "a.png"});
   tool.row(1, {"raycast", "point.bpt", "-o", "a.png"});
   tool.row(1, {"info", "cut.json"});
+  tool.row(1, {"measure", "huge.bpt"});
   tool.row(1, {"check", "teapot.bpt"});
   tool.row(2, {"convert", "teapot.bpt", "-o", "a.step"});
 

@@ -68,7 +68,8 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
       {"eval", {"MODEL", "--grid", "--params", "--derivs", "--format", "--output"}},
       {"tessellate", {"MODEL", "--output", "--grid", "--json"}},
       {"raycast", {"MODEL", "--output", "--size", "--shade", "--camera", "--rays", "--hits", "--mode", "--all-hits"}},
-      {"check", {"MESH", "--json"}}};
+      {"check", {"MESH", "--json"}},
+      {"measure", {"MODEL", "--accuracy", "--inertia", "--enclosed", "--require-solids", "--json"}}};
   for (const auto& [command, options] : commands) {
     const std::string help = output_of({command, "--help"});
     for (const std::string& option : options)
@@ -77,9 +78,9 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 }
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
-  expect_failure(
-      {}, 2,
-      "expected a command (info, eval, tessellate, raycast, convert, check, completion, man or help), found none");
+  expect_failure({}, 2,
+                 "expected a command (info, eval, tessellate, raycast, convert, check, measure, completion, man or "
+                 "help), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
   expect_failure({"info", teapot, "--colour"}, 2, "--colour");

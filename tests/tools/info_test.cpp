@@ -179,7 +179,8 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
       {"convert", {"convert", teapot, "-o", "a.obj"}},
       {"raycast -o", {"raycast", teapot, "--size", "8x8", "--shade", "error", "-o", "a.png"}},
       {"raycast --rays", {"raycast", teapot, "--rays", "rays.csv", "--hits", "b.csv"}},
-      {"check", {"check", "a.ply"}}};
+      {"check", {"check", "a.ply"}},
+      {"measure", {"measure", teapot, "--enclosed", "--inertia"}}};
   for (const auto& [name, words] : runs) {
     const std::size_t begin = page.find("## " + name + "\n");
     ASSERT_NE(begin, std::string::npos) << name;

@@ -22,6 +22,7 @@ void add_commands(Command& tool, Session& session) {
   add_raycast(tool, session);
   add_convert(tool, session);
   add_check(tool, session);
+  add_measure(tool, session);
   add_completion(tool, session);
   add_man(tool, session);
   add_help(tool, session);

@@ -25,6 +25,7 @@
 #include "tessera/hermite_patch.h"
 #include "tessera/limits.h"
 #include "tessera/local_geometry.h"
+#include "tessera/measures.h"
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"
 #include "tessera/model.h"

@@ -28,8 +28,8 @@ Integrals central(const Integrals& m) {
     const double x = m.value[1 + a], y = m.value[1 + b], ex = m.error[1 + a], ey = m.error[1 + b];
     const double taken = x * y / mass;
     all.value[place] -= taken;
-    all.error[place] += (std::abs(x) * ey + std::abs(y) * ex + ex * ey) / least +
-                        std::abs(taken) * m.error[0] / least + unit * (std::abs(m.value[place]) + std::abs(taken));
+    all.error[place] += (std::abs(x) * ey + std::abs(y) * ex + ex * ey) / least + std::abs(taken) * m.error[0] / least +
+                        unit * (std::abs(m.value[place]) + std::abs(taken));
   }
   return all;
 }
@@ -42,8 +42,7 @@ double condition_of(const Affine& map) {
 }
 
 void set_axes(Inertia& inertia) {
-  const SymmetricEigen eigen =
-      symmetric_eigen(inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.yz, inertia.zx);
+  const SymmetricEigen eigen = symmetric_eigen(inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.yz, inertia.zx);
   std::array<std::size_t, 3> order{0, 1, 2};
   std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(eigen.values[k], k); });
   for (std::size_t k = 0; k < 3; ++k) {
@@ -85,8 +84,8 @@ Integrals moved_area(const Integrals& area, const Vec3& from, const Vec3& to) {
   const double rounding = unit * (max_abs(from) + max_abs(to));
   for (std::size_t k = 0; k < 3; ++k) {
     all.value[1 + k] += area.value[0] * by[k];
-    all.error[1 + k] += area.error[0] * std::abs(by[k]) + std::abs(area.value[0]) * rounding +
-                        unit * std::abs(all.value[1 + k]);
+    all.error[1 + k] +=
+        area.error[0] * std::abs(by[k]) + std::abs(area.value[0]) * rounding + unit * std::abs(all.value[1 + k]);
   }
   return all;
 }
@@ -122,8 +121,8 @@ Integrals moments_of(const BodyMeasures& body, const Vec3& centre) {
   const Inertia& i = body.inertia;
   const double mass = body.volume.value, most = mass + body.volume.error;
   const std::array<double, 3> c = coordinates(body.centroid.value - centre);
-  const std::array<double, 6> s{0.5 * (i.yy + i.zz - i.xx), 0.5 * (i.xx + i.zz - i.yy), 0.5 * (i.xx + i.yy - i.zz),
-                                -i.xy, -i.yz, -i.zx};
+  const std::array<double, 6> s{
+      0.5 * (i.yy + i.zz - i.xx), 0.5 * (i.xx + i.zz - i.yy), 0.5 * (i.xx + i.yy - i.zz), -i.xy, -i.yz, -i.zx};
   const double off = body.centroid.error + unit * (max_abs(body.centroid.value) + max_abs(centre));
   all.value[0] = mass, all.error[0] = body.volume.error;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -161,8 +160,8 @@ BodyMeasures placed(const BodyMeasures& body, const Affine& map) {
       for (std::size_t l = 0; l < 3; ++l) {
         const double scale = factor * a[row][k] * a[column][l];
         image.value[at] += scale * own.value[place[k][l]];
-        image.error[at] += std::abs(scale) * (own.error[place[k][l]] +
-                                              rounding * condition_of(map) * std::abs(own.value[place[k][l]]));
+        image.error[at] += std::abs(scale) *
+                           (own.error[place[k][l]] + rounding * condition_of(map) * std::abs(own.value[place[k][l]]));
       }
   BodyMeasures result = body_of(image, map.point(body.centroid.value), {});
   result.centroid.error += unit * (max_abs(body.centroid.value) * map.norm_bound() + max_abs(map.translation));

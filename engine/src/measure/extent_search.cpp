@@ -71,10 +71,9 @@ TrimSide ExtentSearch::side(std::size_t patch, const Domain& window) const {
   const Domain domain = face_.grid.patch_domain(patch), all = face_.grid.domain();
   constexpr double grown = 1e-12;  // far above the rounding of the window's ends
   const double du = grown * (all.u1 - all.u0), dv = grown * (all.v1 - all.v0);
-  return impl_of(*points_).cells.locate_all({std::max(domain.u_at(window.u0) - du, all.u0),
-                                             std::min(domain.u_at(window.u1) + du, all.u1),
-                                             std::max(domain.v_at(window.v0) - dv, all.v0),
-                                             std::min(domain.v_at(window.v1) + dv, all.v1)});
+  return impl_of(*points_).cells.locate_all(
+      {std::max(domain.u_at(window.u0) - du, all.u0), std::min(domain.u_at(window.u1) + du, all.u1),
+       std::max(domain.v_at(window.v0) - dv, all.v0), std::min(domain.v_at(window.v1) + dv, all.v1)});
 }
 
 void ExtentSearch::push(Part part) {
@@ -139,8 +138,7 @@ void ExtentSearch::add_patch(std::size_t place) {
     if (piece.start().u != piece.end().u && piece.start().v != piece.end().v) band = band + face_.loop_error;
     const LocalCurve curve(piece.curve, patch);
     const double rounding = 64 * curve.rounding();  // of halves of halves too
-    const double off_u = band.u / (patch.u1 - patch.u0) + rounding,
-                 off_v = band.v / (patch.v1 - patch.v0) + rounding;
+    const double off_u = band.u / (patch.u1 - patch.u0) + rounding, off_v = band.v / (patch.v1 - patch.v0) + rounding;
     add_curve(place, curve, off_u * by_u + off_v * by_v);
   }
 }

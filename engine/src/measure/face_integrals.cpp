@@ -25,14 +25,11 @@ void add_fit_error(const FitError& fit, const Integrals& area, double reach, Exa
   if (!(fit.distance > 0)) return;
   Integrals all;
   const double volume = 3 * fit.distance * (area.value[0] + area.error[0]);
-  for (int k = 0; k < 10; ++k)
-    all.error[static_cast<std::size_t>(k)] = 2 * volume * std::pow(reach, moment_degree(k));
+  for (int k = 0; k < 10; ++k) all.error[static_cast<std::size_t>(k)] = 2 * volume * std::pow(reach, moment_degree(k));
   flux.add(all, 1);
 }
 
-double reach_of(const Box3& box, const Vec3& centre) {
-  return length(box.centre() - centre) + 0.5 * box.diagonal();
-}
+double reach_of(const Box3& box, const Vec3& centre) { return length(box.centre() - centre) + 0.5 * box.diagonal(); }
 
 }  // namespace
 

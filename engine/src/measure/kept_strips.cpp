@@ -64,7 +64,8 @@ class RowStrips {
       kept += by;
     }
     add_side(patch.v1);
-    for (const std::uint32_t piece : region_.pieces_of(a * region_.count_v() + b)) strips.push_back(strip(piece, patch));
+    for (const std::uint32_t piece : region_.pieces_of(a * region_.count_v() + b))
+      strips.push_back(strip(piece, patch));
     return strips;
   }
 
@@ -72,7 +73,9 @@ class RowStrips {
     const TrimPiece& piece = region_.pieces[index];
     ParameterPoint band = piece.error;
     if (piece.start().u != piece.end().u && piece.start().v != piece.end().v) band = band + loop_error_;
-    return {LocalCurve(piece.curve, patch), 0, double(signs_.signs[index]),
+    return {LocalCurve(piece.curve, patch),
+            0,
+            double(signs_.signs[index]),
             {band.u / (patch.u1 - patch.u0), band.v / (patch.v1 - patch.v0)}};
   }
 

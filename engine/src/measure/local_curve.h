@@ -62,8 +62,8 @@ class CurveSeries {
   explicit CurveSeries(const LocalCurve& curve);
 
   struct Disc {
-    double u, v;      ///< the largest |u(z) - centre().u| and |v(z) - centre().v|; infinite where it may have a pole
-    double v_speed;   ///< the largest |v'(z)|
+    double u, v;     ///< the largest |u(z) - centre().u| and |v(z) - centre().v|; infinite where it may have a pole
+    double v_speed;  ///< the largest |v'(z)|
   };
   const ParameterPoint& centre() const { return centre_; }
   Disc disc(double reach) const;

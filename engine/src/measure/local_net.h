@@ -92,10 +92,10 @@ class NetSeries {
   void bound_hull(const LocalNet& net);
   void make_normals(const std::vector<Vec3>& points, const std::vector<double>& weights);
 
-  int m_, n_;                 ///< degrees of the points
-  int mn_ = 0, nn_ = 0;       ///< degrees of the normals
+  int m_, n_;            ///< degrees of the points
+  int mn_ = 0, nn_ = 0;  ///< degrees of the normals
   Vec3 middle_;
-  Sizes real_{};  ///< for real parameters, from the hull of the control points
+  Sizes real_{};                 ///< for real parameters, from the hull of the control points
   std::vector<double> points_;   ///< |a_ij|, relative to the middle
   std::vector<double> weights_;  ///< |w_ij|; empty for a polynomial patch
   std::vector<double> normals_;  ///< |n_ij| of w^3 r_u x r_v

@@ -38,7 +38,8 @@ double ScalarNet::size() const {
 }
 
 double ScalarNet::corner(bool last_u, bool last_v) const {
-  return value((last_u ? static_cast<std::size_t>(m_) * count_of(n_) : 0) + (last_v ? static_cast<std::size_t>(n_) : 0));
+  return value((last_u ? static_cast<std::size_t>(m_) * count_of(n_) : 0) +
+               (last_v ? static_cast<std::size_t>(n_) : 0));
 }
 
 double ScalarNet::variation(bool along_u) const {

@@ -56,8 +56,8 @@ LoopDirections directions_of(const ShapeFace& face) {
     TrimOptions options = TrimRegion::Impl::options_of(*grid);
     const bool is_quadric = std::holds_alternative<QuadricPiece>(surface.surface);
     if (face.trims->empty() && !is_quadric) options.snap = outline_snap;
-    const Result<TrimRegion> region = TrimRegion::Impl::make(**mapped, grid->breaks_u(), grid->breaks_v(), options,
-                                                             TrimRegion::Impl::Use::patches);
+    const Result<TrimRegion> region =
+        TrimRegion::Impl::make(**mapped, grid->breaks_u(), grid->breaks_v(), options, TrimRegion::Impl::Use::patches);
     if (region) directions = loop_directions(impl_of(*region), loops.size());
   }
   for (std::size_t k = 0; k < loops.size(); ++k)

@@ -81,8 +81,8 @@ class StripSearch {
     std::optional<StripCell::Found> found = cell.integrate(enough);
     // What bounds said of the size may be far too much: then the rule must be better.
     const auto is_exact = [&](double share) {
-      return found->integrals.error[0] <= std::max(share * limits_.accuracy * found->magnitude,
-                                                   limits_.accuracy * magnitude_ / 64);
+      return found->integrals.error[0] <=
+             std::max(share * limits_.accuracy * found->magnitude, limits_.accuracy * magnitude_ / 64);
     };
     if (found && !is_exact(4)) {
       std::optional<StripCell::Found> better = cell.integrate(limits_.accuracy * found->magnitude);

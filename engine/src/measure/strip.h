@@ -56,9 +56,9 @@ struct StripPatch {
 struct Strip {
   LocalCurve curve;
   double base = 0;
-  double sign = 1;              ///< 1 where the strip is added, -1 where it is taken away
-  ParameterPoint band{};        ///< how far the true curve may be off in u and in v
-  bool is_whole = false;        ///< whether it is all of the patch, whose parts have exact parameters
+  double sign = 1;        ///< 1 where the strip is added, -1 where it is taken away
+  ParameterPoint band{};  ///< how far the true curve may be off in u and in v
+  bool is_whole = false;  ///< whether it is all of the patch, whose parts have exact parameters
 };
 
 /// How exact integrals are to be.

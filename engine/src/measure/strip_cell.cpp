@@ -39,8 +39,8 @@ void StripCell::find_window() {
   const ParameterPoint &from = square_.curve.start(), &to = square_.curve.end();
   const double base = strip_.base;
   const auto u_at = [&](double s, double u) { return std::clamp(base + s * (u - base), 0.0, 1.0); };
-  const auto [low, high] = std::minmax({u_at(square_.s0, from.u), u_at(square_.s0, to.u), u_at(square_.s1, from.u),
-                                        u_at(square_.s1, to.u)});
+  const auto [low, high] =
+      std::minmax({u_at(square_.s0, from.u), u_at(square_.s0, to.u), u_at(square_.s1, from.u), u_at(square_.s1, to.u)});
   const auto [below, above] = std::minmax(std::clamp(from.v, 0.0, 1.0), std::clamp(to.v, 0.0, 1.0));
   window_ = {low, high, below, above};
   half_u_ = 0.5 * (high - low), half_v_ = 0.5 * (above - below);
@@ -69,8 +69,7 @@ StripCell::Bound StripCell::bound(double reach_s, double reach_t) const {
   const double reach_v = bound_slack * (off_v + disc.v) / half_v_;
   if (!(reach_u < 1e6) || !(reach_v < 1e6)) return {std::numeric_limits<double>::infinity(), 0};
   Bound all = integrand_bound(reach_u, reach_v);
-  if (integrand_ == Integrand::area)
-    all.value = series_->normal(reach_u, reach_v) / (4 * half_u_ * half_v_);
+  if (integrand_ == Integrand::area) all.value = series_->normal(reach_u, reach_v) / (4 * half_u_ * half_v_);
   all.value *= 2 * half_s * far * disc.v_speed * bound_slack;
   return all;
 }

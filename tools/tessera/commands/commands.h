@@ -41,6 +41,7 @@ void add_tessellate(Command& tool, Session& session);
 void add_raycast(Command& tool, Session& session);
 void add_convert(Command& tool, Session& session);
 void add_check(Command& tool, Session& session);
+void add_measure(Command& tool, Session& session);
 void add_completion(Command& tool, Session& session);
 void add_man(Command& tool, Session& session);
 void add_help(Command& tool, Session& session);
