@@ -149,6 +149,16 @@ TEST(Solids, OpenSolidsNameTheirOpenEdges) {
   EXPECT_TRUE(value_of(measure_solids(shape)).empty());
 }
 
+TEST(Solids, FacesThatCannotBeOrientedAreAnError) {
+  Shape shape;
+  add_box(shape, {0, 0, 0}, {1, 1, 1}, 0);
+  // The loop of one face names two of its opposite edges the other way round.
+  std::vector<TrimLoop> loops = *shape.faces[1].trims;
+  for (const std::size_t k : {0u, 2u}) loops[0].coedges[k].reversed = !loops[0].coedges[k].reversed;
+  shape.faces[1].trims = loops;
+  expect_refused(measure_solids(shape), StatusCode::invalid_argument, 0, "solid 0: its faces cannot be oriented");
+}
+
 TEST(Solids, OptionsOutOfRangeAreErrors) {
   const Model model = model_of(surfaces_of(sphere()));
   for (const double accuracy : {0.0, -1.0, 1.0, infinity, not_a_number}) {

@@ -100,15 +100,14 @@ Skin ShapeIntegrals::whole_skin() const {
 }
 
 Status ShapeIntegrals::add_skins(const Shell& shell, std::vector<Skin>& skins) const {
-  const Result<std::vector<OrientedFace>> oriented = oriented_faces(shape_, shell.faces, directions_);
+  const Result<OrientedShell> oriented = oriented_shell(shape_, shell.faces, directions_, slits_);
   if (!oriented) return oriented.status();
-  std::uint32_t parts = 0;
-  for (const OrientedFace& face : *oriented) parts = std::max(parts, face.part + 1);
-  for (std::uint32_t part = 0; part < parts; ++part) {
+  for (std::uint32_t part = 0; part < oriented->parts; ++part) {
     ExactSums sums;
     Skin skin;
+    skin.proven = oriented->is_certain;
     std::vector<std::uint32_t> faces;
-    for (const OrientedFace& face : *oriented) {
+    for (const OrientedFace& face : oriented->faces) {
       if (face.part != part) continue;
       sums.add(faces_[face.face].flux.sums(), face.sign);
       skin.proven = skin.proven && faces_[face.face].proven;

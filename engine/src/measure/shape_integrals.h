@@ -30,7 +30,7 @@ class ShapeIntegrals {
   const Box3& box() const { return box_; }
   /// Returns all faces as one skin, as their normals are.
   Skin whole_skin() const;
-  /// Appends the skins of a closed shell. Errors: those of oriented_faces().
+  /// Appends the skins of a closed shell. Errors: those of oriented_shell().
   Status add_skins(const Shell& shell, std::vector<Skin>& skins) const;
 
  private:

@@ -1,6 +1,8 @@
 #include "measure/shell_orientation.h"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "base/impl_access.h"
 #include "base/text.h"
@@ -42,6 +44,40 @@ std::vector<std::vector<Use>> uses_of(const Shape& shape, const std::vector<std:
   }
   return uses;
 }
+
+/// Sets of faces, each turned or not relative to the first of its set.
+class SignedUnion {
+ public:
+  explicit SignedUnion(std::size_t count) : parents_(count), signs_(count, 1) {
+    for (std::size_t k = 0; k < count; ++k) parents_[k] = static_cast<std::uint32_t>(k);
+  }
+  /// Returns the first face of the set, and the sign relative to it.
+  std::pair<std::uint32_t, int> find(std::uint32_t face) {
+    int sign = 1;
+    while (parents_[face] != face) {
+      const std::uint32_t above = parents_[face];
+      signs_[face] *= signs_[above];  // halves the path: roots have the sign 1
+      parents_[face] = parents_[above];
+      sign *= signs_[face];
+      face = parents_[face];
+    }
+    return {face, sign};
+  }
+  /// Joins two sets, or returns whether the faces of one have the sign `turn` relative to each other.
+  bool join(std::uint32_t a, std::uint32_t b, int turn) {
+    const auto [root_a, sign_a] = find(a);
+    const auto [root_b, sign_b] = find(b);
+    if (root_a == root_b) return sign_a * sign_b == turn;
+    const auto [low, high] = std::minmax({root_a, root_b});
+    parents_[high] = low;
+    signs_[high] = sign_a * sign_b * turn;
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+  std::vector<int> signs_;  ///< relative to the parent
+};
 
 }  // namespace
 
@@ -85,45 +121,38 @@ std::string open_edges_of(const Shape& shape, const std::vector<std::uint32_t>& 
   return faces.empty() ? "it has no faces" : "";
 }
 
-Result<std::vector<OrientedFace>> oriented_faces(const Shape& shape, const std::vector<std::uint32_t>& shell,
-                                                 const std::vector<LoopDirections>& directions) {
+Result<OrientedShell> oriented_shell(const Shape& shape, const std::vector<std::uint32_t>& shell,
+                                     const std::vector<LoopDirections>& directions,
+                                     const std::vector<EdgeSlit>& slits) {
   const std::vector<std::vector<Use>> uses = uses_of(shape, shell, directions);
-  struct Join {
-    std::uint32_t to;
-    int turn;  ///< -1: the faces' normals are on different sides
-    std::size_t edge;
-  };
-  std::vector<std::vector<Join>> joins(shell.size());
+  std::vector<std::size_t> joining;
+  double total = 0, against = 0;
   for (std::size_t edge = 0; edge < uses.size(); ++edge) {
     const std::vector<Use>& of = uses[edge];
     if (of.size() != 2 || shape.edges[edge].degenerate || of[0].place == of[1].place) continue;
-    const int turn = of[0].direction == of[1].direction ? -1 : 1;
-    joins[of[0].place].push_back({of[1].place, turn, edge});
-    joins[of[1].place].push_back({of[0].place, turn, edge});
+    joining.push_back(edge);
+    total += slits[edge].length;
   }
-  std::vector<OrientedFace> oriented(shell.size());
-  std::vector<std::uint32_t> next;
-  std::uint32_t part = 0;
-  for (std::uint32_t start = 0; start < shell.size(); ++start) {
-    if (oriented[start].sign != 0) continue;
-    oriented[start] = {shell[start], 1, part};
-    next.push_back(start);
-    while (!next.empty()) {
-      const std::uint32_t at = next.back();
-      next.pop_back();
-      for (const Join& join : joins[at]) {
-        OrientedFace& other = oriented[join.to];
-        const int sign = oriented[at].sign * join.turn;
-        if (other.sign == 0) {
-          other = {shell[join.to], sign, part};
-          next.push_back(join.to);
-        } else if (other.sign != sign) {
-          return Status(StatusCode::invalid_argument, "its faces cannot be oriented: those of edge " +
-                                                          std::to_string(join.edge) + " are on different sides");
-        }
-      }
-    }
-    ++part;
+  std::ranges::stable_sort(joining, std::greater<>(), [&](std::size_t edge) { return slits[edge].length; });
+  SignedUnion faces(shell.size());
+  std::size_t worst = 0;
+  for (const std::size_t edge : joining) {
+    const Use &a = uses[edge][0], &b = uses[edge][1];
+    const int turn = a.direction == b.direction ? -1 : 1;
+    if (faces.join(a.place, b.place, turn)) continue;
+    if (against == 0) worst = edge;
+    against += slits[edge].length;
+  }
+  constexpr double share = 0.01;  // loops that are slivers have no reliable direction
+  if (against > share * total)
+    return Status(StatusCode::invalid_argument, "its faces cannot be oriented: those of edge " +
+                                                    std::to_string(worst) + " are on different sides");
+  OrientedShell oriented{{}, 0, against == 0};
+  std::vector<std::uint32_t> part(shell.size(), no_id);
+  for (std::uint32_t place = 0; place < shell.size(); ++place) {
+    const auto [root, sign] = faces.find(place);
+    if (part[root] == no_id) part[root] = oriented.parts++;
+    oriented.faces.push_back({shell[place], sign, part[root]});
   }
   return oriented;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "measure/edge_slits.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 #include "tessera/topology.h"
@@ -23,10 +24,17 @@ struct OrientedFace {
   int sign;
   std::uint32_t part;  ///< faces of a shell that edges join have the same
 };
-/// Orients the faces of a shell: along an edge of two faces, both run in opposite directions. `directions`: of all
-/// faces of the shape. Errors: invalid_argument (faces that cannot be oriented).
-Result<std::vector<OrientedFace>> oriented_faces(const Shape& shape, const std::vector<std::uint32_t>& shell,
-                                                 const std::vector<LoopDirections>& directions);
+struct OrientedShell {
+  std::vector<OrientedFace> faces;
+  std::uint32_t parts = 0;
+  bool is_certain = true;  ///< whether all edges agree
+};
+/// Orients the faces of a shell: along an edge of two faces, both run in opposite directions. Long edges count first;
+/// edges that do not agree may be a hundredth of all in length. `directions`, `slits`: of all faces and edges of the
+/// shape. Errors: invalid_argument (faces that cannot be oriented).
+Result<OrientedShell> oriented_shell(const Shape& shape, const std::vector<std::uint32_t>& shell,
+                                     const std::vector<LoopDirections>& directions,
+                                     const std::vector<EdgeSlit>& slits);
 
 /// Says which edges of some faces are open: "2 open edges: 17, 23"; empty if none is.
 std::string open_edges_of(const Shape& shape, const std::vector<std::uint32_t>& faces);
