@@ -212,7 +212,7 @@ if(WAY STREQUAL "package")
   check_python(${prefix})
   if(PYTHON)
     foreach(guide README engine/docs/tessellation-backend engine/docs/ray-hits engine/docs/renderer
-        engine/docs/tracking-speed engine/docs/c)
+        engine/docs/tracking-speed engine/docs/c engine/docs/queries)
       get_filename_component(folder ${guide} NAME)
       set(shell)
       if(guide STREQUAL "README")

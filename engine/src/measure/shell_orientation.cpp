@@ -145,8 +145,8 @@ Result<OrientedShell> oriented_shell(const Shape& shape, const std::vector<std::
   }
   constexpr double share = 0.01;  // loops that are slivers have no reliable direction
   if (against > share * total)
-    return Status(StatusCode::invalid_argument, "its faces cannot be oriented: those of edge " +
-                                                    std::to_string(worst) + " are on different sides");
+    return Status(StatusCode::invalid_argument,
+                  "its faces cannot be oriented: those of edge " + std::to_string(worst) + " are on different sides");
   OrientedShell oriented{{}, 0, against == 0};
   std::vector<std::uint32_t> part(shell.size(), no_id);
   for (std::uint32_t place = 0; place < shell.size(); ++place) {

@@ -33,8 +33,7 @@ struct OrientedShell {
 /// edges that do not agree may be a hundredth of all in length. `directions`, `slits`: of all faces and edges of the
 /// shape. Errors: invalid_argument (faces that cannot be oriented).
 Result<OrientedShell> oriented_shell(const Shape& shape, const std::vector<std::uint32_t>& shell,
-                                     const std::vector<LoopDirections>& directions,
-                                     const std::vector<EdgeSlit>& slits);
+                                     const std::vector<LoopDirections>& directions, const std::vector<EdgeSlit>& slits);
 
 /// Says which edges of some faces are open: "2 open edges: 17, 23"; empty if none is.
 std::string open_edges_of(const Shape& shape, const std::vector<std::uint32_t>& faces);
