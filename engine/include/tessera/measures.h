@@ -1,5 +1,6 @@
 #pragma once
-// Areas of surfaces; volumes, centroids and inertia of solids; tight boxes. Each number comes with a bound of its error.
+// Areas of surfaces; volumes, centroids and inertia of solids; tight boxes. Each number comes with a bound of its
+// error.
 //
 // Bounds: integrals are sums of Gauss rules whose remainders are bounded from the size of the integrand at complex
 // parameters; rounding, the width of trimming loops and the rounding of placements are added. Members `proven` tell

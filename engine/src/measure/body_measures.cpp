@@ -107,7 +107,7 @@ Status in_shape(const Model& model, std::size_t shape, const Status& status) {
 Result<std::vector<BodyMeasures>> measure_solids(const Shape& shape, const MeasureOptions& options,
                                                  const Execution& execution) {
   return guarded([&]() -> Result<std::vector<BodyMeasures>> {
-    if (Status status = check(options); !status.ok()) return status;
+    if (Status status = check_options(options); !status.ok()) return status;
     if (Status status = check_topology(shape); !status.ok()) return status;
     return solids_of(shape, options, execution);
   });
@@ -116,7 +116,7 @@ Result<std::vector<BodyMeasures>> measure_solids(const Shape& shape, const Measu
 Result<std::vector<BodyMeasures>> measure_solids(const Model& model, const MeasureOptions& options,
                                                  const Execution& execution) {
   return guarded([&]() -> Result<std::vector<BodyMeasures>> {
-    if (Status status = check(options); !status.ok()) return status;
+    if (Status status = check_options(options); !status.ok()) return status;
     if (Status status = check_topology(model); !status.ok()) return status;
     std::vector<bool> is_used(model.shapes.size());
     for (const Instance& instance : model.instances) is_used[instance.shape] = true;
@@ -144,7 +144,7 @@ Result<std::vector<BodyMeasures>> measure_solids(const Model& model, const Measu
 Result<BodyMeasures> measure_enclosed(std::span<const ModelSurface> surfaces, const MeasureOptions& options,
                                       const Execution& execution) {
   return guarded([&]() -> Result<BodyMeasures> {
-    if (Status status = check(options); !status.ok()) return status;
+    if (Status status = check_options(options); !status.ok()) return status;
     if (surfaces.empty()) return Status(StatusCode::invalid_argument, "there are no surfaces");
     Shape shape;
     Shell shell;

@@ -33,7 +33,7 @@ double reach_of(const Box3& box, const Vec3& centre) { return length(box.centre(
 
 }  // namespace
 
-Status check(const MeasureOptions& options) {
+Status check_options(const MeasureOptions& options) {
   if (!(options.accuracy >= 1e-14 && options.accuracy <= 1e-2))
     return Status(StatusCode::invalid_argument,
                   "the accuracy must be from 1e-14 to 1e-2, found " + text(options.accuracy));
@@ -75,11 +75,11 @@ FaceIntegrals integrate(const MeasuredFace& face, const Vec3& centre, bool area,
   FaceIntegrals all;
   all.proven = face.proven;
   const StripLimits limits{options.accuracy, options.max_cells};
-  const auto add = [&](std::size_t place, std::span<const Strip> strips) {
+  const auto add = [&](std::size_t place, std::span<const CurveStrip> strips) {
     const BezierPatch& patch = face.grid.patches()[place];
     const Vec3 middle = patch.hull_box().centre();
     const StripPatch local{LocalNet(patch, middle, face.data_error), middle - centre};
-    for (const Strip& strip : strips) {
+    for (const CurveStrip& strip : strips) {
       if (area) add_strip(local, strip, Integrand::area, limits, all.area);
       if (area) add_band(local, strip, Integrand::area, all.area);
       if (flux) add_strip(local, strip, Integrand::flux, limits, all.flux);
@@ -91,7 +91,7 @@ FaceIntegrals integrate(const MeasuredFace& face, const Vec3& centre, bool area,
     all.proven = all.proven && kept.is_certain;
     for (const PatchStrips& patch : kept.patches) add(patch.place, patch.strips);
   } else {
-    const Strip whole = whole_strip();
+    const CurveStrip whole = whole_strip();
     for (std::size_t place = 0; place < face.grid.patches().size(); ++place) add(place, std::span(&whole, 1));
   }
   if (area && flux) add_fit_error(face.grid.fit_error(), all.area.sums(), reach_of(face.grid.box(), centre), all.flux);

@@ -35,6 +35,6 @@ FaceIntegrals integrate(const MeasuredFace& face, const Vec3& centre, bool area,
                         const MeasureOptions& options);
 
 /// Checks the options. Errors: invalid_argument.
-Status check(const MeasureOptions& options);
+Status check_options(const MeasureOptions& options);
 
 }}  // namespace tessera::abi_0_1

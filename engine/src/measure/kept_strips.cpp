@@ -47,10 +47,10 @@ class RowStrips {
     if ((at->second += by) == 0) steps_.erase(at);
   }
 
-  std::vector<Strip> strips_of(std::size_t a, std::size_t b, bool& is_certain) const {
+  std::vector<CurveStrip> strips_of(std::size_t a, std::size_t b, bool& is_certain) const {
     const std::vector<double>&u = region_.lines.u.lines, &v = region_.lines.v.lines;
     const Domain patch{u[a], u[a + 1], v[b], v[b + 1]};
-    std::vector<Strip> strips;
+    std::vector<CurveStrip> strips;
     int kept = region_.starts_inside ? 1 : 0;
     double from = patch.v0;
     const auto add_side = [&](double to) {
@@ -69,7 +69,7 @@ class RowStrips {
     return strips;
   }
 
-  Strip strip(std::uint32_t index, const Domain& patch) const {
+  CurveStrip strip(std::uint32_t index, const Domain& patch) const {
     const TrimPiece& piece = region_.pieces[index];
     ParameterPoint band = piece.error;
     if (piece.start().u != piece.end().u && piece.start().v != piece.end().v) band = band + loop_error_;

@@ -9,8 +9,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// On which side of each piece the region is kept: 1 for smaller u, -1 for larger u, 0 for pieces of constant v. A piece
-/// that others cross or touch counts by its middle, and makes `is_certain` false.
+/// On which side of each piece the region is kept: 1 for smaller u, -1 for larger u, 0 for pieces of constant v. A
+/// piece that others cross or touch counts by its middle, and makes `is_certain` false.
 struct PieceSigns {
   std::vector<std::int8_t> signs;
   bool is_certain = true;
@@ -23,7 +23,7 @@ std::vector<std::int8_t> loop_directions(const TrimRegion::Impl& region, std::si
 /// The strips of one patch.
 struct PatchStrips {
   std::size_t place;  ///< of the patch, a * count_v + b
-  std::vector<Strip> strips;
+  std::vector<CurveStrip> strips;
 };
 /// All strips of a face.
 struct KeptStrips {
@@ -35,6 +35,6 @@ struct KeptStrips {
 KeptStrips kept_strips(const TrimRegion::Impl& region, const ParameterPoint& loop_error);
 
 /// Returns the strip that is all of a patch.
-inline Strip whole_strip() { return {LocalCurve({1, 0}, {1, 1}), 0, 1, {}, true}; }
+inline CurveStrip whole_strip() { return {LocalCurve({1, 0}, {1, 1}), 0, 1, {}, true}; }
 
 }}  // namespace tessera::abi_0_1

@@ -108,11 +108,11 @@ LocalNet::Row LocalNet::row(double v) const {
   return row;
 }
 
-NetPoint LocalNet::at(const Row& row, double u) const {
+LocalNetPoint LocalNet::at(const Row& row, double u) const {
   std::array<double, max_order> basis, slopes;
   bernstein_values(m_, u, basis.data());
   bernstein_derivatives(m_, u, slopes.data());
-  NetPoint point{};
+  LocalNetPoint point{};
   double w = 0, wu = 0, wv = 0;
   for (std::size_t i = 0; i < count_of(m_); ++i) {
     point.position += basis[i] * row.points[i];

@@ -15,11 +15,11 @@ template <class T>
 void cut_net(std::vector<T>& values, int degree_u, int degree_v, const Domain& to);
 
 /// A point of a patch and the derivatives by its parameters.
-struct NetPoint {
+struct LocalNetPoint {
   Vec3 position, du, dv;
 };
 
-/// Bounds of the rounding of NetPoint, over the whole net.
+/// Bounds of the rounding of LocalNetPoint, over the whole net.
 struct NetRounding {
   double position, du, dv;
 };
@@ -45,7 +45,7 @@ class LocalNet {
     std::array<double, max_order> weights, weight_slopes;
   };
   Row row(double v) const;
-  NetPoint at(const Row& row, double u) const;
+  LocalNetPoint at(const Row& row, double u) const;
 
  private:
   friend class NetSeries;

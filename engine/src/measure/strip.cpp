@@ -52,7 +52,7 @@ struct Unresolved {
 /// Halves the squares of a strip until the bound of what is not resolved is small.
 class StripSearch {
  public:
-  StripSearch(const StripPatch& patch, const Strip& strip, Integrand integrand, const StripLimits& limits,
+  StripSearch(const StripPatch& patch, const CurveStrip& strip, Integrand integrand, const StripLimits& limits,
               ExactSums& sums)
       : patch_(patch), strip_(strip), integrand_(integrand), limits_(limits), sums_(sums) {}
 
@@ -106,7 +106,7 @@ class StripSearch {
   }
 
   const StripPatch& patch_;
-  const Strip& strip_;
+  const CurveStrip& strip_;
   const Integrand integrand_;
   const StripLimits& limits_;
   ExactSums& sums_;
@@ -117,7 +117,7 @@ class StripSearch {
 
 }  // namespace
 
-void add_strip(const StripPatch& patch, const Strip& strip, Integrand integrand, const StripLimits& limits,
+void add_strip(const StripPatch& patch, const CurveStrip& strip, Integrand integrand, const StripLimits& limits,
                ExactSums& sums) {
   StripSearch(patch, strip, integrand, limits, sums).run();
 }

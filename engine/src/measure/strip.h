@@ -53,7 +53,7 @@ struct StripPatch {
 };
 
 /// The strip between u = base and a curve.
-struct Strip {
+struct CurveStrip {
   LocalCurve curve;
   double base = 0;
   double sign = 1;        ///< 1 where the strip is added, -1 where it is taken away
@@ -67,11 +67,11 @@ struct StripLimits {
   std::size_t max_cells;  ///< squares of one strip that may be halved
 };
 
-/// Adds a bound of the integrals over Strip::band on both sides of its curve.
-void add_band(const StripPatch& patch, const Strip& strip, Integrand integrand, ExactSums& sums);
+/// Adds a bound of the integrals over CurveStrip::band on both sides of its curve.
+void add_band(const StripPatch& patch, const CurveStrip& strip, Integrand integrand, ExactSums& sums);
 
 /// Adds the integrals over a strip, without its band.
-void add_strip(const StripPatch& patch, const Strip& strip, Integrand integrand, const StripLimits& limits,
+void add_strip(const StripPatch& patch, const CurveStrip& strip, Integrand integrand, const StripLimits& limits,
                ExactSums& sums);
 
 }}  // namespace tessera::abi_0_1

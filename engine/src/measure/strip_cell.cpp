@@ -22,7 +22,7 @@ std::array<double, 10> monomials(const Vec3& r) {
 
 }  // namespace
 
-StripCell::StripCell(const StripPatch& patch, const Strip& strip, const StripSquare& square, Integrand integrand)
+StripCell::StripCell(const StripPatch& patch, const CurveStrip& strip, const StripSquare& square, Integrand integrand)
     : patch_(patch), strip_(strip), square_(square), integrand_(integrand) {
   find_window();
   is_empty_ = !(half_u_ > 0) || !(half_v_ > 0);
@@ -139,7 +139,7 @@ double StripCell::sum(int nodes_s, int nodes_t, Integrals& all) const {
     const double scale = along_t.weights[j] * jacobian;
     for (std::size_t i = 0; i < static_cast<std::size_t>(nodes_s); ++i) {
       const double u = base + (square_.s0 + along_s.nodes[i] * width) * (at.u - base);
-      const NetPoint point = net_->at(row, strip_.is_whole ? along_s.nodes[i] : (u - window_.u0) / du);
+      const LocalNetPoint point = net_->at(row, strip_.is_whole ? along_s.nodes[i] : (u - window_.u0) / du);
       const Vec3 r = patch_.centre + point.position, normal = cross(point.du, point.dv);
       const double value = integrand_ == Integrand::area ? length(normal) : dot(r, normal);
       const double weighted = scale * along_s.weights[i] * value;
@@ -203,7 +203,7 @@ std::pair<StripSquare, StripSquare> StripCell::halves() const {
   return {std::move(first), std::move(second)};
 }
 
-void add_band(const StripPatch& patch, const Strip& strip, Integrand integrand, ExactSums& sums) {
+void add_band(const StripPatch& patch, const CurveStrip& strip, Integrand integrand, ExactSums& sums) {
   const ParameterPoint &from = strip.curve.start(), &to = strip.curve.end(), &band = strip.band;
   const double width = std::abs(to.u - from.u), height = std::abs(to.v - from.v);
   const double area = 2 * (band.u * (height + 2 * band.v) + band.v * (width + 2 * band.u));

@@ -19,7 +19,7 @@ struct StripSquare {
 
 class StripCell {
  public:
-  StripCell(const StripPatch& patch, const Strip& strip, const StripSquare& square, Integrand integrand);
+  StripCell(const StripPatch& patch, const CurveStrip& strip, const StripSquare& square, Integrand integrand);
 
   /// Whether the square has no area in the patch's parameters.
   bool is_empty() const { return is_empty_; }
@@ -59,7 +59,7 @@ class StripCell {
   void add_rounding(Integrals& to) const;
 
   const StripPatch& patch_;
-  const Strip& strip_;
+  const CurveStrip& strip_;
   StripSquare square_;
   Integrand integrand_;
   Domain window_;

@@ -54,7 +54,7 @@ SurfaceMeasures total_of(std::span<const SurfaceIntegrals> all) {
 
 Result<AreaMeasures> measure_surfaces(const Model& model, const MeasureOptions& options, const Execution& execution) {
   return guarded([&]() -> Result<AreaMeasures> {
-    if (Status status = check(options); !status.ok()) return status;
+    if (Status status = check_options(options); !status.ok()) return status;
     if (Status status = check_topology(model); !status.ok()) return status;
     const std::vector<ModelSurface>& surfaces = model.surfaces;
     std::vector<SurfaceIntegrals> found(surfaces.size());

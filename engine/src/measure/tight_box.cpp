@@ -69,7 +69,7 @@ MeasuredBox box_of(const std::vector<BoxFace>& faces) {
 
 Result<MeasuredBox> measure_box(const Model& model, const MeasureOptions& options, const Execution& execution) {
   return guarded([&]() -> Result<MeasuredBox> {
-    if (Status status = check(options); !status.ok()) return status;
+    if (Status status = check_options(options); !status.ok()) return status;
     if (Status status = check_topology(model); !status.ok()) return status;
     const std::vector<ModelSurface>& surfaces = model.surfaces;
     if (surfaces.empty()) return MeasuredBox{};
