@@ -89,7 +89,6 @@ void fill_commands(Table& table) {
   tool.row(2, {"measure"});
   for (const char* const accuracy : {"0", "-1", "nan", "1e-15", "1", "x"})
     tool.row(2, {"measure", "teapot.bpt", "--accuracy", accuracy});
-  tool.row(1, {"measure", "teapot.bpt", "--require-solids"});
 }
 
 void fill_model_commands(Table& table) {

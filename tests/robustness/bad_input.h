@@ -64,6 +64,7 @@ void fill_trims(Table& table);
 void fill_operations(Table& table);
 void fill_sets(Table& table);
 void fill_shapes(Table& table);
+void fill_measures(Table& table);
 void fill_grids(Table& table);
 void fill_points(Table& table);
 void fill_functions(Table& table);
