@@ -22,8 +22,8 @@ Model model_of_one(const Surface& surface) {
   return model;
 }
 BezierPatch square(double size) {
-  return value_of(BezierPatch::polynomial(1, 1, std::array{Vec3{0, 0, 0}, Vec3{0, size, 0}, Vec3{size, 0, 0},
-                                                           Vec3{size, size, 0}}));
+  return value_of(BezierPatch::polynomial(
+      1, 1, std::array{Vec3{0, 0, 0}, Vec3{0, size, 0}, Vec3{size, 0, 0}, Vec3{size, size, 0}}));
 }
 
 void options(Table& table) {
@@ -49,8 +49,7 @@ void boxes(Table& table) {
   Model cut = model_of_one(square(1));
   TrimLoop far{{space_line({5, 5, 0}, {6, 5, 0}), space_line({6, 5, 0}, {6, 6, 0}), space_line({6, 6, 0}, {5, 5, 0})}};
   cut.surfaces[0].trims = std::vector<TrimLoop>{far};
-  table.gives("a loop outside of the domain", "a box that holds what is kept",
-              measure_box(cut).ok() || measure_box(cut).status().code() == invalid_argument);
+  table.row("a loop outside of the domain", invalid_argument, measure_box(cut));
   table.gives("no surfaces", "an empty box", value_of(measure_box({})).box.empty());
 }
 

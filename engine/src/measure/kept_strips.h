@@ -10,7 +10,7 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// On which side of each piece the region is kept: 1 for smaller u, -1 for larger u, 0 for pieces of constant v. A
-/// piece that others cross or touch counts by its middle, and makes `is_certain` false.
+/// piece that others cross or touch counts by its middle, and makes `is_certain` false, as far as samples tell.
 struct PieceSigns {
   std::vector<std::int8_t> signs;
   bool is_certain = true;

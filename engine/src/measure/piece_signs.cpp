@@ -9,7 +9,7 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// The parity of the pieces that a ray towards larger u meets, from the middle of a piece.
+/// The parity of the pieces that a ray towards larger u meets, from a point of a piece.
 class Sweep {
  public:
   explicit Sweep(const std::vector<TrimPiece>& pieces) : pieces_(pieces), by_start_(pieces.size()) {
@@ -17,14 +17,14 @@ class Sweep {
     std::ranges::sort(by_start_, {}, [&](std::size_t k) { return std::pair(pieces[k].lower_v(), k); });
   }
 
-  /// `starts_inside`: whether points that no piece encloses are kept.
-  PieceSigns run(bool starts_inside) {
+  /// `starts_inside`: whether points that no piece encloses are kept. `t`: the parameter of the points.
+  PieceSigns run(bool starts_inside, double t) {
     PieceSigns found;
     found.signs.assign(pieces_.size(), 0);
     std::vector<ParameterPoint> middles;
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
-      middles.push_back(relative_point(pieces_[k].curve, {0, 0}, 0.5));
+      middles.push_back(relative_point(pieces_[k].curve, {0, 0}, t));
       if (pieces_[k].lower_v() < pieces_[k].upper_v()) order.push_back(k);
     }
     std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(middles[k].v, k); });
@@ -79,7 +79,22 @@ void vote(const std::vector<TrimPiece>& pieces, bool starts_inside, int left, st
 }  // namespace
 
 PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside) {
-  return Sweep(pieces).run(starts_inside);
+  PieceSigns found = Sweep(pieces).run(starts_inside, 0.5);
+  // Where pieces cross, the kept side changes along a piece, or from one piece of a loop to the next.
+  for (const double t : {0.0625, 0.9375})
+    if (Sweep(pieces).run(starts_inside, t).signs != found.signs) found.is_certain = false;
+  std::uint32_t loops = 0;
+  for (const TrimPiece& piece : pieces)
+    if (piece.loop != no_id) loops = std::max(loops, piece.loop + 1);
+  std::vector<int> directions(loops, 0);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (pieces[k].loop == no_id || found.signs[k] == 0) continue;
+    const int direction = found.signs[k] * (pieces[k].start().v < pieces[k].end().v ? 1 : -1);
+    int& of_loop = directions[pieces[k].loop];
+    if (of_loop == -direction) found.is_certain = false;
+    if (of_loop == 0) of_loop = direction;
+  }
+  return found;
 }
 
 std::vector<std::int8_t> loop_directions(const TrimRegion::Impl& region, std::size_t loops) {
