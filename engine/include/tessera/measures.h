@@ -88,7 +88,7 @@ struct BodyMeasures {
   /// distances leave are part of the errors above: their length times their width times the distance to the body's
   /// middle. This share is as certain as samples are.
   double gap = 0;
-  bool proven = true;  ///< whether all else is: see SurfaceMeasures::proven
+  bool proven = true;  ///< whether all else is: see SurfaceMeasures::proven; false if edges disagree on sides
 };
 
 /// Measures the areas of all surfaces of a model.

@@ -84,6 +84,14 @@ void make_positive(Skin& skin) {
     for (double& value : skin.moments.value) value = -value;
 }
 
+/// Adds what it would change to turn the one of two faces that matters less.
+void add_conflict(const Integrals& a, const Integrals& b, ExactSums& sums) {
+  const Integrals& less = std::abs(a.value[0]) <= std::abs(b.value[0]) ? a : b;
+  Integrals error;
+  for (std::size_t k = 0; k < error.error.size(); ++k) error.error[k] = 2 * (std::abs(less.value[k]) + less.error[k]);
+  sums.add(error, 1);
+}
+
 }  // namespace
 
 Skin ShapeIntegrals::whole_skin() const {
@@ -105,7 +113,7 @@ Status ShapeIntegrals::add_skins(const Shell& shell, std::vector<Skin>& skins) c
   for (std::uint32_t part = 0; part < oriented->parts; ++part) {
     ExactSums sums;
     Skin skin;
-    skin.proven = oriented->is_certain;
+    skin.proven = oriented->conflicts.empty();
     std::vector<std::uint32_t> faces;
     for (const OrientedFace& face : oriented->faces) {
       if (face.part != part) continue;
@@ -114,6 +122,7 @@ Status ShapeIntegrals::add_skins(const Shell& shell, std::vector<Skin>& skins) c
       faces.push_back(face.face);
     }
     add_slits(faces, skin, sums);
+    for (const auto& [a, b] : oriented->conflicts) add_conflict(faces_[a].flux.sums(), faces_[b].flux.sums(), sums);
     skin.moments = volume_moments(sums.sums());
     make_positive(skin);
     skins.push_back(std::move(skin));

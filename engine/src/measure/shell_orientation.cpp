@@ -136,18 +136,19 @@ Result<OrientedShell> oriented_shell(const Shape& shape, const std::vector<std::
   std::ranges::stable_sort(joining, std::greater<>(), [&](std::size_t edge) { return slits[edge].length; });
   SignedUnion faces(shell.size());
   std::size_t worst = 0;
+  OrientedShell oriented;
   for (const std::size_t edge : joining) {
     const Use &a = uses[edge][0], &b = uses[edge][1];
     const int turn = a.direction == b.direction ? -1 : 1;
     if (faces.join(a.place, b.place, turn)) continue;
     if (against == 0) worst = edge;
     against += slits[edge].length;
+    oriented.conflicts.push_back({shell[a.place], shell[b.place]});
   }
   constexpr double share = 0.01;  // loops that are slivers have no reliable direction
   if (against > share * total)
     return Status(StatusCode::invalid_argument,
                   "its faces cannot be oriented: those of edge " + std::to_string(worst) + " are on different sides");
-  OrientedShell oriented{{}, 0, against == 0};
   std::vector<std::uint32_t> part(shell.size(), no_id);
   for (std::uint32_t place = 0; place < shell.size(); ++place) {
     const auto [root, sign] = faces.find(place);

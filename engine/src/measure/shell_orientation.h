@@ -1,6 +1,7 @@
 #pragma once
 // The directions of a shell's faces: how normals must be turned so that all point to the same side.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct OrientedFace {
 struct OrientedShell {
   std::vector<OrientedFace> faces;
   std::uint32_t parts = 0;
-  bool is_certain = true;  ///< whether all edges agree
+  /// Two faces each, of an edge that does not agree: one of them may be turned the wrong way.
+  std::vector<std::array<std::uint32_t, 2>> conflicts = {};
 };
 /// Orients the faces of a shell: along an edge of two faces, both run in opposite directions. Long edges count first;
 /// edges that do not agree may be a hundredth of all in length. `directions`, `slits`: of all faces and edges of the
