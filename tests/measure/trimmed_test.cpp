@@ -109,6 +109,8 @@ TEST(TrimmedAreas, LoopsThatCrossAreNotProven) {
   // Two discs of which the common part is cut away, as an odd number of loops must enclose a point.
   const SurfaceMeasures found = measured(plate, {circle({0.4, 0.5}, 0.2), circle({0.6, 0.5}, 0.2)});
   EXPECT_FALSE(found.proven);
+  const double lens = 2 * 0.04 * std::acos(0.5) - 0.1 * std::sqrt(4 * 0.04 - 0.04);
+  EXPECT_NEAR(found.area.value, 2 * (std::numbers::pi * 0.04 - lens), found.area.error);
 }
 
 }}  // namespace tessera::test

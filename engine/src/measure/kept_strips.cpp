@@ -73,6 +73,7 @@ class RowStrips {
     const TrimPiece& piece = region_.pieces[index];
     ParameterPoint band = piece.error;
     if (piece.start().u != piece.end().u && piece.start().v != piece.end().v) band = band + loop_error_;
+    if (signs_.is_crossed[index]) band = band + distance(piece.start(), piece.end());
     return {LocalCurve(piece.curve, patch),
             0,
             double(signs_.signs[index]),

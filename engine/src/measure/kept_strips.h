@@ -13,6 +13,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// piece that others cross or touch counts by its middle, and makes `is_certain` false, as far as samples tell.
 struct PieceSigns {
   std::vector<std::int8_t> signs;
+  std::vector<bool> is_crossed;  ///< whether samples of the piece are on different sides
   bool is_certain = true;
 };
 PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside);

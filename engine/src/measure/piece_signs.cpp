@@ -81,8 +81,12 @@ void vote(const std::vector<TrimPiece>& pieces, bool starts_inside, int left, st
 PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside) {
   PieceSigns found = Sweep(pieces).run(starts_inside, 0.5);
   // Where pieces cross, the kept side changes along a piece, or from one piece of a loop to the next.
-  for (const double t : {0.0625, 0.9375})
-    if (Sweep(pieces).run(starts_inside, t).signs != found.signs) found.is_certain = false;
+  found.is_crossed.assign(pieces.size(), false);
+  for (const double t : {0.0625, 0.9375}) {
+    const PieceSigns other = Sweep(pieces).run(starts_inside, t);
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      if (other.signs[k] != found.signs[k]) found.is_crossed[k] = true, found.is_certain = false;
+  }
   std::uint32_t loops = 0;
   for (const TrimPiece& piece : pieces)
     if (piece.loop != no_id) loops = std::max(loops, piece.loop + 1);
