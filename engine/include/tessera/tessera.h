@@ -34,6 +34,7 @@
 #include "tessera/parametric_surface.h"
 #include "tessera/patch_set.h"
 #include "tessera/quadric.h"
+#include "tessera/sections.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 #include "tessera/surface.h"
