@@ -40,7 +40,7 @@ struct SectionOptions {
   /// The height within which a point counts as one of the plane's when it is decided what runs along the plane; at
   /// least 0. 1e-11 of the size of the set and of its distance from the origin by default.
   std::optional<double> contact = {};
-  /// How far ends on one edge of two faces may be apart to be joined; at least 0. 1e-3 of the set's size by default.
+  /// How far ends on one edge of two faces may be apart to be joined; at least 0. 5e-3 of the size of the set by default.
   std::optional<double> max_gap = {};
   std::size_t max_points = std::size_t{1} << 28;  ///< of all polylines together
 };

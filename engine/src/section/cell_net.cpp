@@ -157,22 +157,25 @@ bool CellNet::is_constant_along(bool along_u, double contact) const {
 void CellNet::choose(CellFacts& facts, const Levels& levels, double lowest, double highest) const {
   const Slopes along_u = slopes(true, lowest, highest), along_v = slopes(false, lowest, highest);
   const Sizes of = sizes();
-  const auto graph = [&](const Slopes& across, const Slopes& along, double size, double second_across,
-                         double second_along) {
+  facts.bending = infinity;
+  double least = infinity;
+  // A steep graph is a poor one even where it needs few chords: places along it are found to fewer digits.
+  const auto take = [&](CellKind kind, double bending, double turn) {
+    const double cost = bending + 8 * levels.chord * turn * turn;
+    if (cost < least) facts.kind = kind, facts.bending = bending, least = cost;
+  };
+  const auto take_graph = [&](CellKind kind, const Slopes& across, const Slopes& along, double size,
+                              double second_across, double second_along) {
     const double slope = across.distance();
-    if (!(slope > 0)) return infinity;
+    if (!(slope > 0)) return;
     const double turn = along.size() / slope;
     const double bent = second_across * turn * turn + 2 * of.uv * turn + second_along;
-    return bent * std::max(1.0, size * of.largest_weight / slope);
+    take(kind, bent * std::max(1.0, size * of.largest_weight / slope), turn);
   };
-  facts.bending = infinity;
-  const auto take = [&](CellKind kind, double bending) {
-    if (bending < facts.bending) facts.kind = kind, facts.bending = bending;
-  };
-  take(CellKind::over_v, graph(along_u, along_v, of.u, of.uu, of.vv));
-  take(CellKind::over_u, graph(along_v, along_u, of.v, of.vv, of.uu));
-  if (is_constant_along(false, 0.25 * levels.contact)) take(CellKind::along_v, of.vv);
-  if (is_constant_along(true, 0.25 * levels.contact)) take(CellKind::along_u, of.uu);
+  take_graph(CellKind::over_v, along_u, along_v, of.u, of.uu, of.vv);
+  take_graph(CellKind::over_u, along_v, along_u, of.v, of.vv, of.uu);
+  if (is_constant_along(false, 0.25 * levels.contact)) take(CellKind::along_v, of.vv, 0);
+  if (is_constant_along(true, 0.25 * levels.contact)) take(CellKind::along_u, of.uu, 0);
   if (facts.diameter <= levels.chord && std::isinf(facts.bending)) {
     // Chords this short need no proof of their distance, and the order of points along a graph none of its slope.
     if (along_u.is_one_sided(levels.rounding)) facts.kind = CellKind::over_v;

@@ -9,7 +9,7 @@ namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Chords of a cell beyond which it may pay to bound its parts one by one, and how often it is tried.
-constexpr double many_chords = 16, too_many_chords = 64;
+constexpr double many_chords = 16, more_chords = 64, max_chords = 4096;
 constexpr int eager_depth = 6, max_depth = 60;
 
 bool is_simple(const CellFacts& facts, const Levels& levels, int depth) {
@@ -17,8 +17,8 @@ bool is_simple(const CellFacts& facts, const Levels& levels, int depth) {
   if (facts.kind != CellKind::open) {
     if (facts.diameter <= levels.chord) return true;
     const double chords = std::sqrt(facts.bending / (8 * levels.chord));
-    if (chords <= many_chords || (depth >= eager_depth && chords <= too_many_chords)) return true;
-    if (depth >= 2 * eager_depth && std::isfinite(chords)) return true;
+    if (chords <= many_chords || (depth >= eager_depth && chords <= more_chords)) return true;
+    if (depth >= 2 * eager_depth && chords <= max_chords) return true;
   }
   return false;
 }

@@ -56,7 +56,7 @@ SortedLevels sorted_levels(const PatchSet::Impl& set, const Vec3& normal, std::s
   levels.normal = normalized(normal);
   levels.origin = set.origin;
   sorted.tolerance = options.tolerance.value_or(size > 0 ? 1e-4 * size : 1);
-  sorted.max_gap = options.max_gap.value_or(1e-3 * size);
+  sorted.max_gap = options.max_gap.value_or(5e-3 * size);
   // A quarter is left for points that are joined.
   levels.chord = 0.74 * sorted.tolerance;
   levels.contact = options.contact.value_or(1e-11 * reach);
