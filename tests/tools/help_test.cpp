@@ -10,7 +10,7 @@ namespace tessera::test { namespace {
 class Help : public ToolTest {
  protected:
   static const Names& commands() {
-    static const Names names{"info",  "eval",    "tessellate", "raycast", "convert",
+    static const Names names{"info",  "eval",    "tessellate", "raycast", "convert", "section",
                              "check", "measure", "completion", "man",     "help"};
     return names;
   }
@@ -42,7 +42,7 @@ TEST_F(Help, TheToolsHelpSuffices) {
 }
 
 TEST_F(Help, EveryOptionSaysWhatItTakesAndItsDefault) {
-  for (const std::string& command : Names{"info", "eval", "tessellate", "raycast", "convert", "check", "measure"}) {
+  for (const std::string& command : Names{"info", "eval", "tessellate", "raycast", "convert", "section", "check", "measure"}) {
     const std::set<std::string> options = options_of(command);
     for (const char* const common : {"--json", "--timings", "--threads", "--isa"})
       EXPECT_TRUE(options.count(common)) << command << ' ' << common;

@@ -177,6 +177,7 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
       {"tessellate --tolerance", {"tessellate", teapot, "--tolerance", "0.1", "-o", "a.ply"}},
       {"tessellate --tolerance", {"tessellate", teapot, "--angle", "30", "-o", "a.ply"}},
       {"convert", {"convert", teapot, "-o", "a.obj"}},
+      {"section", {"section", teapot, "--at", "1", "-o", "a.svg"}},
       {"raycast -o", {"raycast", teapot, "--size", "8x8", "--shade", "error", "-o", "a.png"}},
       {"raycast --rays", {"raycast", teapot, "--rays", "rays.csv", "--hits", "b.csv"}},
       {"check", {"check", "a.ply"}},

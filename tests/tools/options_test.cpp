@@ -71,6 +71,7 @@ TEST_F(CommonOptions, TimingsAreToldOnRequest) {
       {{"tessellate", teapot, "--grid", "2x2", "-o", "a.ply"}, {"read", "convert", "pack", "evaluate", "write"}},
       {{"raycast", teapot, "--size", "16x16", "-o", "a.png"},
        {"read", "convert", "pack", "build", "evaluate", "write"}},
+      {{"section", teapot, "--at", "1", "-o", "a.svg"}, {"read", "convert", "pack", "section", "write"}},
       {{"check", "a.ply"}, {"read", "check"}},
       {{"measure", teapot}, {"read", "measure"}}};
   for (const auto& [command, phases] : commands) {

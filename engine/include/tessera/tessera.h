@@ -58,6 +58,7 @@
 #if __has_include("tessera/io.h")
 #include "tessera/cad.h"
 #include "tessera/io.h"
+#include "tessera/sections_file.h"
 #include "tessera/surface_file.h"
 #endif
 #if __has_include("tessera/transport.h")
