@@ -38,7 +38,7 @@ struct SectionOptions {
   std::optional<double> tolerance = {};
   PlaneLimit limit = PlaneLimit::automatic;  ///< where a plane runs along a face
   /// The height within which a point counts as one of the plane's when it is decided what runs along the plane; at
-  /// least 0. 1e-11 of the size of the set and of its distance from the origin by default.
+  /// least 0. 1e-12 of the size of the set and of its distance from the origin by default.
   std::optional<double> contact = {};
   /// How far ends on one edge of two faces may be apart to be joined; at least 0. 5e-3 of the size of the set by default.
   std::optional<double> max_gap = {};
@@ -61,16 +61,17 @@ struct SectionPolyline {
   double length = 0;      ///< of all segments
 };
 
-/// A place where a plane touches a surface, or where branches of its section meet.
+/// A place where a plane touches a surface, or where branches of its section meet. Where a plane touches along a curve,
+/// contacts are some of its points, and polylines run along it twice, as the section of a plane beside it does.
 struct SectionContact {
   /// How the plane and the surface meet.
   enum class Kind : std::uint8_t {
-    point,   ///< it touches in a point, or in a curve that is shorter than Sections::contact_size
-    saddle,  ///< branches of the section meet; polylines pass by each other there
+    point,    ///< in a point, or a curve smaller than Sections::contact_size; no polyline goes there
+    tangent,  ///< the plane is tangent to the surface: at a saddle, where branches meet, or along a curve
   };
   Kind kind = Kind::point;  ///< of the contact
   std::uint32_t patch = 0;  ///< the patch that it lies on
-  Vec3 position;            ///< within Sections::contact_size of the contact
+  Vec3 position;            ///< within 4 times Sections::contact_size of it
 };
 
 /// The section of one plane.

@@ -12,7 +12,6 @@ void PatchArcs::reset(const PatchCells& cells, const Level& level, double contac
   cells_ = &cells;
   level_ = level;
   contact_ = contact;
-  is_special_ = false;
   ++turn_;
   if (made_.size() < cells.lines().size()) made_.resize(cells.lines().size(), 0);
   if (roots_.size() < cells.interval_count()) {
@@ -23,7 +22,8 @@ void PatchArcs::reset(const PatchCells& cells, const Level& level, double contac
     above_.resize(cells.interval_count() + cells.lines().size());
   crossings_.clear();
   arcs_.clear();
-  saddles_.clear();
+  points_.clear();
+  special_.clear();
   touched_.clear();
 }
 
@@ -53,7 +53,9 @@ void PatchArcs::make(std::uint32_t index) {
   std::uint8_t* const above = above_.data() + line.first_interval + index;
   for (std::size_t k = 0; k < heights.size(); ++k) {
     above[k] = level_.is_above(heights[k]);
-    is_special_ = is_special_ || std::abs(heights[k] - level_.at) <= 2 * contact_;
+    if (std::abs(heights[k] - level_.at) > 2 * contact_) continue;
+    const double along = line.parameter(line.heights->places()[k]);
+    special_.push_back(line.along_u ? ParameterPoint{along, line.across} : ParameterPoint{line.across, along});
   }
   if (index >= 4) {
     above[0] = is_above(line.on[0], line.across);
@@ -140,8 +142,7 @@ void PatchArcs::visit(std::uint32_t index) {
   around_.clear();
   for (const Side side : all_sides) add_side(cell.sides[static_cast<std::size_t>(side)], is_backward(side));
   if (cell.kind == CellKind::tiny) {
-    if (around_.size() > 2) saddles_.push_back(index);
-    if (around_.empty()) touched_.push_back(index);
+    (around_.empty() ? touched_ : points_).push_back(index);
   }
   if (around_.size() > 2 && cell.kind != CellKind::tiny) sort_over(cell);
   for (std::size_t k = 0; k + 1 < around_.size(); k += 2) add_arc(index, around_[k], around_[k + 1]);

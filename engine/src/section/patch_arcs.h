@@ -30,11 +30,11 @@ class PatchArcs {
 
   std::span<const LineCrossing> crossings() const { return crossings_; }
   std::span<const CellArc> arcs() const { return arcs_; }
-  /// Cells that are points: where branches meet, and where the plane may touch.
-  std::span<const std::uint32_t> saddles() const { return saddles_; }
+  /// Cells that are points, where the plane may be tangent to the patch; `touched`: those without arcs.
+  std::span<const std::uint32_t> points() const { return points_; }
   std::span<const std::uint32_t> touched() const { return touched_; }
-  /// Whether the end of an interval of a line lies in the plane: then the limits from both sides may differ.
-  bool is_special() const { return is_special_; }
+  /// Ends of intervals of lines that lie in the plane: there the limits from both sides may differ.
+  std::span<const ParameterPoint> special() const { return special_; }
 
  private:
   void reset(const PatchCells& cells, const Level& level, double contact);
@@ -49,7 +49,6 @@ class PatchArcs {
   const PatchCells* cells_ = nullptr;
   Level level_{};
   double contact_ = 0;
-  bool is_special_ = false;
   std::uint32_t turn_ = 0;                    ///< the number of this call
   std::vector<std::uint32_t> made_;           ///< by line: the last call that made it
   std::vector<std::uint8_t> above_;           ///< by line and place
@@ -59,7 +58,8 @@ class PatchArcs {
   std::vector<std::uint32_t> to_visit_;
   std::vector<LineCrossing> crossings_;
   std::vector<CellArc> arcs_;
-  std::vector<std::uint32_t> saddles_, touched_;
+  std::vector<std::uint32_t> points_, touched_;
+  std::vector<ParameterPoint> special_;
 };
 
 }}  // namespace tessera::abi_0_1

@@ -23,10 +23,11 @@ void PlaneTracer::trace(std::size_t level, TracedPlane& traced) {
     if (patch.low >= at - levels.contact && patch.high <= at + levels.contact) traced.coplanar.push_back(patch.patch);
   }
   // Both limits, and all patches at a point, find the same contact.
+  std::ranges::stable_sort(traced.contacts, {}, &SectionContact::kind);
   std::vector<SectionContact> distinct;
   for (const SectionContact& contact : traced.contacts)
     if (std::ranges::none_of(distinct, [&](const SectionContact& of) {
-          return of.kind == contact.kind && length(of.position - contact.position) <= 4 * levels.point_size;
+          return length(of.position - contact.position) <= 4 * levels.point_size;
         }))
       distinct.push_back(contact);
   traced.contacts = std::move(distinct);
@@ -42,24 +43,39 @@ bool PlaneTracer::trace_limit(std::size_t level, PlaneLimit limit, TracedPlane& 
   for (const std::uint32_t k : task_.set->of_level(level)) {
     const PreparedPatch& patch = task_.set->patch(k);
     strand_tracer_.trace(patch, {at, side}, points_, strands_);
-    const PatchArcs& arcs = strand_tracer_.arcs();
-    is_special = is_special || arcs.is_special();
-    const auto add = [&](std::span<const std::uint32_t> cells, SectionContact::Kind kind) {
-      for (const std::uint32_t cell : cells) {
-        const Domain& domain = patch.cells.nodes()[cell].domain;
-        const ParameterPoint middle{0.5 * (domain.u0 + domain.u1), 0.5 * (domain.v0 + domain.v1)};
-        if (patch.loops && patch.loops->locate(middle) == TrimSide::outside) continue;
-        traced.contacts.push_back({kind, patch.patch, patch.points.position(middle)});
-      }
-    };
-    add(arcs.saddles(), SectionContact::Kind::saddle);
-    add(arcs.touched(), SectionContact::Kind::point);
+    is_special = is_special || !strand_tracer_.arcs().special().empty();
+    add_contacts(patch, traced);
   }
   links_.join(strands_, points_, task_.links);
   traced.plane.limit = limit;
   traced.plane.largest_gap = links_.largest_gap();
   assemble(traced);
   return is_special;
+}
+
+/// Adds the places of the patch that was traced last where the plane touches it.
+void PlaneTracer::add_contacts(const PreparedPatch& patch, TracedPlane& traced) {
+  const PatchArcs& arcs = strand_tracer_.arcs();
+  const auto middle = [&](std::uint32_t cell) {
+    const Domain& domain = patch.cells.nodes()[cell].domain;
+    return ParameterPoint{0.5 * (domain.u0 + domain.u1), 0.5 * (domain.v0 + domain.v1)};
+  };
+  for (const std::uint32_t cell : arcs.touched())
+    if (!patch.loops || patch.loops->locate(middle(cell)) != TrimSide::outside)
+      traced.contacts.push_back({SectionContact::Kind::point, patch.patch, patch.points.position(middle(cell))});
+  for (const std::uint32_t cell : arcs.points()) add_tangent(patch, middle(cell), traced);
+  const Levels& levels = *task_.levels;
+  if (patch.high - patch.low <= 2 * levels.contact) return;  // it lies in the plane
+  for (const ParameterPoint& at : arcs.special()) add_tangent(patch, at, traced);
+}
+
+/// Adds a point of the plane if the patch is tangent to the plane there.
+void PlaneTracer::add_tangent(const PreparedPatch& patch, const ParameterPoint& at, TracedPlane& traced) {
+  constexpr double max_sine = 1e-3;
+  const Vec3 normal = task_.set->normal(patch, at);
+  if (normal == Vec3{} || length(cross(normal, task_.levels->normal)) > max_sine) return;
+  if (patch.loops && patch.loops->locate(at) == TrimSide::outside) return;
+  traced.contacts.push_back({SectionContact::Kind::tangent, patch.patch, patch.points.position(at)});
 }
 
 /// Chains strands: first from open ends, then around.

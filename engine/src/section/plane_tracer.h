@@ -40,6 +40,8 @@ class PlaneTracer {
  private:
   /// Traces the limit from one side. Returns whether the other one may differ.
   bool trace_limit(std::size_t level, PlaneLimit limit, TracedPlane& traced);
+  void add_contacts(const PreparedPatch& patch, TracedPlane& traced);
+  void add_tangent(const PreparedPatch& patch, const ParameterPoint& at, TracedPlane& traced);
   void assemble(TracedPlane& traced);
   void append_chain(std::uint32_t strand, bool backward, TracedPlane& traced);
   void append_strand(const Strand& strand, bool backward, TracedPlane& traced);

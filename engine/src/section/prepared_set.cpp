@@ -137,6 +137,7 @@ void PreparedSet::list_by_level(const Levels& levels) {
 }
 
 Status PreparedSet::prepare(const PatchSet::Impl& set, const Levels& levels, const Execution& execution) {
+  set_ = &set;
   find_patches(set, levels);
   if (Status status = find_regions(set, execution); !status.ok()) return status;
   const Execution quiet{.cancel = execution.cancel};
@@ -161,6 +162,11 @@ Status PreparedSet::prepare(const PatchSet::Impl& set, const Levels& levels, con
   });
   if (status.ok()) list_by_level(levels);
   return status;
+}
+
+Vec3 PreparedSet::normal(const PreparedPatch& patch, const ParameterPoint& at) const {
+  const UnitNormal normal = unit_normal(set_->patches[patch.patch], at.u, at.v);
+  return normal.kind == NormalKind::regular ? normal.direction : Vec3{};
 }
 
 std::vector<std::uint32_t> PreparedSet::unproven() const {

@@ -21,6 +21,8 @@ class PreparedSet {
   Status prepare(const PatchSet::Impl& set, const Levels& levels, const Execution& execution);
 
   const PreparedPatch& patch(std::size_t k) const { return *patches_[k]; }
+  /// The unit normal of a patch; zero where it has none.
+  Vec3 normal(const PreparedPatch& patch, const ParameterPoint& at) const;
   /// The prepared patches that a level may meet, growing. `level`: index into Levels::heights.
   std::span<const std::uint32_t> of_level(std::size_t level) const {
     return std::span(by_level_).subspan(first_[level], first_[level + 1] - first_[level]);
@@ -40,6 +42,7 @@ class PreparedSet {
   void make(const PatchSet::Impl& set, const Levels& levels, std::size_t first, std::size_t end);
   void list_by_level(const Levels& levels);
 
+  const PatchSet::Impl* set_ = nullptr;
   std::vector<Sides> sides_;
   std::deque<HeightLine> borders_;
   std::vector<std::pair<double, double>> border_ends_;  ///< heights

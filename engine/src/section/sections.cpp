@@ -59,10 +59,11 @@ SortedLevels sorted_levels(const PatchSet::Impl& set, const Vec3& normal, std::s
   sorted.max_gap = options.max_gap.value_or(5e-3 * size);
   // A quarter is left for points that are joined.
   levels.chord = 0.74 * sorted.tolerance;
-  levels.contact = options.contact.value_or(1e-11 * reach);
+  levels.contact = options.contact.value_or(1e-12 * reach);
   levels.rounding = 0x1p-50 * reach;
   levels.contact = std::max(levels.contact, 4 * levels.rounding);
-  levels.point_size = std::min(sorted.tolerance, 1e-6 * reach);
+  // A plane that touches a surface as curved as the model is large has a limit of this size.
+  levels.point_size = std::min(sorted.tolerance, 4 * std::sqrt(levels.contact * reach));
   levels.max_points = options.max_points;
   std::vector<double> heights;
   for (const double offset : offsets)
