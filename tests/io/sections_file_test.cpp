@@ -68,16 +68,13 @@ TEST(SectionsFile, SvgIsTheDrawingInThePlane) {
   EXPECT_NE(text.find("<g id=\"section-0\" inkscape:groupmode=\"layer\""), std::string::npos);
   EXPECT_NE(text.find("data-offset=\"0.05\""), std::string::npos);
   // The plane's axes are y and z; z points up, so it is negated.
+  const std::size_t begin = text.find(" d=\"M") + 4;
+  std::string path = text.substr(begin, text.find('"', begin) - begin);
+  for (char& c : path)
+    if (c == 'M' || c == 'L' || c == 'Z') c = ' ';
+  std::istringstream stream(path);
   std::vector<double> numbers;
-  for (std::size_t at = text.find("d=\"M"); at != std::string::npos && at < text.find("\"/>");) {
-    at = text.find_first_of("ML 0123456789-.\"", at + 2);
-    std::string path = text.substr(at, text.find("\"/>") - at);
-    for (char& c : path)
-      if (c == 'M' || c == 'L' || c == 'Z') c = ' ';
-    std::istringstream stream(path);
-    for (double number; stream >> number;) numbers.push_back(number);
-    break;
-  }
+  for (double number; stream >> number;) numbers.push_back(number);
   ASSERT_EQ(numbers.size(), 2 * sections.points.size());
   for (std::size_t k = 0; k < sections.points.size(); ++k) {
     EXPECT_EQ(numbers[2 * k], sections.points[k].position.y);
@@ -111,7 +108,8 @@ TEST(SectionsFile, PlyHoldsVerticesAndEdges) {
   for (std::size_t k = 0; k < count; ++k) {
     std::array<double, 3> p;
     std::memcpy(p.data(), text.data() + begin + 24 * k, 24);
-    EXPECT_EQ(p, (std::array{sections.points[k].position.x, sections.points[k].position.y, sections.points[k].position.z}));
+    EXPECT_EQ(
+        p, (std::array{sections.points[k].position.x, sections.points[k].position.y, sections.points[k].position.z}));
     std::array<std::int32_t, 3> edge;
     std::memcpy(edge.data(), text.data() + begin + 24 * count + 12 * k, 12);
     const Vec3 a = sections.points.at(edge[0]).position, b = sections.points.at(edge[1]).position;
@@ -149,7 +147,8 @@ TEST(SectionsFile, BadListsAndPlacesAreErrors) {
   sections.planes[2].polyline_count -= 1;
   sections.polylines[1].first = sections.points.size();
   expect_error("a.ply", StatusCode::invalid_argument, "polyline 1 has points beyond the list");
-  const Sections none{.normal = {0, 0, 1}, .planes = {}, .polylines = {}, .points = {}, .contacts = {}, .coplanar = {}, .unproven = {}};
+  const Sections none{
+      .normal = {0, 0, 1}, .planes = {}, .polylines = {}, .points = {}, .contacts = {}, .coplanar = {}, .unproven = {}};
   for (const char* const name : {"a.svg", "a.dxf", "a.ply"}) EXPECT_TRUE(write_sections(none, folder / name).ok());
 }
 

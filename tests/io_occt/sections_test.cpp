@@ -7,6 +7,7 @@
 #include <opencascade/BRepGProp.hxx>
 #include <opencascade/GProp_GProps.hxx>
 #include <opencascade/Standard_Failure.hxx>
+#include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/gp_Pln.hxx>
 
 #include <algorithm>
@@ -16,9 +17,9 @@
 #include <optional>
 
 #include "io_occt/cad_shapes.h"
+#include "support/synthetic_sets.h"
 #include "tessera/cad.h"
 #include "tessera/topology.h"
-#include "support/synthetic_sets.h"
 
 namespace tessera::test { namespace {
 
@@ -85,23 +86,28 @@ TEST(SectionOfParts, ClosedShellsHaveClosedSections) {
   EXPECT_LE(open_planes * 500, planes);
 }
 
-/// The length of OpenCASCADE's section, and the seconds that it takes; nothing if it fails.
+/// The length of OpenCASCADE's sections of all solids, and the seconds that they take; nothing if one fails. Solids go
+/// one by one, because OpenCASCADE counts curves once where solids touch.
 std::optional<double> length_by_opencascade(const TopoDS_Shape& shape, const Vec3& n, double offset, double& seconds) {
+  const gp_Pln plane(gp_Pnt(n.x * offset, n.y * offset, n.z * offset), gp_Dir(n.x, n.y, n.z));
+  const auto begin = std::chrono::steady_clock::now();
+  double sum = 0;
   try {
-    const auto begin = std::chrono::steady_clock::now();
-    BRepAlgoAPI_Section section(shape, gp_Pln(gp_Pnt(n.x * offset, n.y * offset, n.z * offset), gp_Dir(n.x, n.y, n.z)),
-                                false);
-    section.ComputePCurveOn1(false);
-    section.Approximation(false);
-    section.Build();
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (!section.IsDone()) return {};
-    GProp_GProps properties;
-    BRepGProp::LinearProperties(section.Shape(), properties);
-    return properties.Mass();
+    for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
+      BRepAlgoAPI_Section section(solid.Current(), plane, false);
+      section.ComputePCurveOn1(false);
+      section.Approximation(false);
+      section.Build();
+      if (!section.IsDone()) return {};
+      GProp_GProps properties;
+      BRepGProp::LinearProperties(section.Shape(), properties);
+      sum += properties.Mass();
+    }
   } catch (const Standard_Failure&) {
     return {};
   }
+  seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return sum;
 }
 
 TEST(SectionOfParts, LengthsAreThoseOfOpenCascade) {

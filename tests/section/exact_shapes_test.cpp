@@ -89,7 +89,8 @@ TEST(Section, APlaneThroughThePolesIsOneCircle) {
 
 TEST(Section, APlaneThatTouchesABallHasAContact) {
   const PatchSet set = ball(1);
-  for (const Vec3& normal : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, normalized(Vec3{1, 2, 2}), normalized(Vec3{3, 1, -2})}) {
+  for (const Vec3& normal :
+       {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, normalized(Vec3{1, 2, 2}), normalized(Vec3{3, 1, -2})}) {
     const Sections made = value_of(make_section(set, {normal, 1}));
     EXPECT_EQ(made.polylines.size(), 0u);
     ASSERT_EQ(made.contacts.size(), 1u);
@@ -108,13 +109,13 @@ TEST(Section, ATorusHasTwoCirclesAndVillarceaus) {
   EXPECT_NEAR(flat.planes[0].length, 4 * pi * large, 1e-2);
 
   const double slope = std::asin(small / large);
-  const Sections tilted =
-      value_of(make_section(set, {{-std::sin(slope), 0, std::cos(slope)}, 0}, {.tolerance = 1e-5}));
+  const Sections tilted = value_of(make_section(set, {{-std::sin(slope), 0, std::cos(slope)}, 0}, {.tolerance = 1e-5}));
   expect_sound(set, tilted, 1e-11);
   EXPECT_EQ(tilted.planes[0].open_count, 0u);
   EXPECT_NEAR(tilted.planes[0].length, 4 * pi * large, 1e-3);
   for (const SectionPoint& point : tilted.points) {
-    const double first = length(point.position - Vec3{0, small, 0}), second = length(point.position + Vec3{0, small, 0});
+    const double first = length(point.position - Vec3{0, small, 0}),
+                 second = length(point.position + Vec3{0, small, 0});
     EXPECT_LT(std::min(std::abs(first - large), std::abs(second - large)), tilted.contact_size);
   }
 }

@@ -94,8 +94,8 @@ TEST(SectionOfRandomFields, NoBranchIsMissed) {
   for (int trial = 0; trial < 120; ++trial) {
     const int m = 1 + trial % 5, n = 1 + trial / 5 % 5;
     const bool is_rational = trial % 3 == 1;
-    const PatchSet set =
-        value_of(PatchSet::make(std::vector{random_patch(random, m, n, is_rational, trial % 2 ? 4 : 100, trial % 2 == 0 ? 4 : 0)}));
+    const PatchSet set = value_of(PatchSet::make(
+        std::vector{random_patch(random, m, n, is_rational, trial % 2 ? 4 : 100, trial % 2 == 0 ? 4 : 0)}));
     const Plane plane{normalized(Vec3{0, 0, 1} + uniform_vector(random, -0.5, 0.5)), uniform(random, -0.3, 0.3)};
     const Sections made = value_of(make_section(set, plane, {.tolerance = 1e-3}));
     expect_sound(set, made);
@@ -132,7 +132,8 @@ TEST(SectionOfRandomFields, ManyPlanesAreThoseOfOneByOne) {
 
 TEST(SectionOfRandomFields, SmallLoopsAreFound) {
   // A paraboloid's cap of radius 1e-5: no grid of samples would see it.
-  const std::vector<Vec3> points{{0, 0, 0.5}, {0, 0.5, 0}, {0, 1, 0.5}, {0.5, 0, 0}, {0.5, 0.5, -0.5}, {0.5, 1, 0}, {1, 0, 0.5}, {1, 0.5, 0}, {1, 1, 0.5}};
+  const std::vector<Vec3> points{{0, 0, 0.5}, {0, 0.5, 0}, {0, 1, 0.5}, {0.5, 0, 0}, {0.5, 0.5, -0.5},
+                                 {0.5, 1, 0}, {1, 0, 0.5}, {1, 0.5, 0}, {1, 1, 0.5}};
   const PatchSet set = value_of(PatchSet::make(std::vector{polynomial(2, 2, points)}));  // z = (x-1/2)^2 + (y-1/2)^2
   const Sections made = value_of(make_section(set, {{0, 0, 1}, 1e-10}, {.tolerance = 1e-7}));
   ASSERT_EQ(made.polylines.size(), 1u);

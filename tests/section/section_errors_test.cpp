@@ -62,12 +62,16 @@ TEST(SectionErrors, TheNumberOfPointsHasALimit) {
 /// All bytes of the lists.
 std::string bytes_of(const Sections& sections) {
   std::string bytes;
-  const auto add = [&](const auto& value) { bytes.append(std::bit_cast<std::array<char, sizeof value>>(value).data(), sizeof value); };
+  const auto add = [&](const auto& value) {
+    bytes.append(std::bit_cast<std::array<char, sizeof value>>(value).data(), sizeof value);
+  };
   for (const SectionPoint& p : sections.points)
     add(p.position.x), add(p.position.y), add(p.position.z), add(p.u), add(p.v), add(p.patch), add(p.bridges_gap);
   for (const SectionPolyline& p : sections.polylines) add(p.first), add(p.count), add(p.closed), add(p.length);
-  for (const PlaneSection& p : sections.planes) add(p.offset), add(p.bound), add(p.length), add(p.largest_gap), add(p.open_count);
-  for (const SectionContact& c : sections.contacts) add(c.position.x), add(c.position.y), add(c.position.z), add(c.patch);
+  for (const PlaneSection& p : sections.planes)
+    add(p.offset), add(p.bound), add(p.length), add(p.largest_gap), add(p.open_count);
+  for (const SectionContact& c : sections.contacts)
+    add(c.position.x), add(c.position.y), add(c.position.z), add(c.patch);
   return bytes;
 }
 
@@ -75,7 +79,8 @@ TEST(SectionErrors, AnyNumberOfThreadsGivesTheSameBytes) {
   std::string expected;
   for (const int threads : {1, 2, 3, 8}) {
     oneapi::tbb::task_arena(threads).execute([&] {
-      const std::string bytes = bytes_of(value_of(make_sections(ring(), {0.3, 0.2, 1}, layers(97), {.tolerance = 1e-4})));
+      const std::string bytes =
+          bytes_of(value_of(make_sections(ring(), {0.3, 0.2, 1}, layers(97), {.tolerance = 1e-4})));
       if (expected.empty()) expected = bytes;
       EXPECT_EQ(bytes == expected, true) << threads;
     });
@@ -109,8 +114,8 @@ TEST(SectionErrors, FarFromTheOriginNothingIsLost) {
   const PatchSet set = value_of(PatchSet::make(moved));
   const Vec3 normal = normalized({1, 1, 2});
   const Sections made = value_of(make_section(set, {normal, dot(normal, far)}, {.tolerance = 1e-4}));
-  const Sections near = value_of(
-      make_section(value_of(PatchSet::make(Torus(12).patches(false))), {normal, 0}, {.tolerance = 1e-4}));
+  const Sections near =
+      value_of(make_section(value_of(PatchSet::make(Torus(12).patches(false))), {normal, 0}, {.tolerance = 1e-4}));
   EXPECT_EQ(made.planes[0].open_count, 0u);
   EXPECT_EQ(made.polylines.size(), near.polylines.size());
   EXPECT_NEAR(made.planes[0].length, near.planes[0].length, 1e-4);

@@ -141,8 +141,8 @@ TEST(SectionOfShapes, APlateWithManyHoles) {
   std::vector<TrimLoop> loops{space_polygon({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}})};
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 5; ++j) loops.push_back(circle_loop(1 + 2 * i, 1 + 2 * j, 0.5, true, 0.3 * i + j));
-  const PatchSet set = value_of(make_patch_set(Model{
-      .name = "plate", .surfaces = {rectangle_face({0, 0, 0}, {10, 0, 0}, {0, 10, 0}, loops)}}));
+  const PatchSet set = value_of(
+      make_patch_set(Model{.name = "plate", .surfaces = {rectangle_face({0, 0, 0}, {10, 0, 0}, {0, 10, 0}, loops)}}));
   for (int k = 0; k < 40; ++k) {
     const double x = 0.125 + 0.25 * k;
     const Sections made = cut(set, {1, 0, 0}, x);

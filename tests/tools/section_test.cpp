@@ -22,8 +22,8 @@ TEST_F(SectionTool, TheWordsCountPolylines) {
 }
 
 TEST_F(SectionTool, JsonHasTheLengthAndTheBoundOfEachPlane) {
-  const json facts = json::parse(output_of({"section", models + "sphere.json", "--axis", "x", "--at", "0", "--at", "0.6",
-                                            "--at", "7", "--tolerance", "1e-5", "-o", "a.ply", "--json"}));
+  const json facts = json::parse(output_of({"section", models + "sphere.json", "--axis", "x", "--at", "0", "--at",
+                                            "0.6", "--at", "7", "--tolerance", "1e-5", "-o", "a.ply", "--json"}));
   ASSERT_EQ(facts["planes"].size(), 3u);
   EXPECT_NEAR(facts["planes"][0]["length"], 2 * std::numbers::pi, 1e-4);
   EXPECT_NEAR(facts["planes"][1]["length"], 1.6 * std::numbers::pi, 1e-4);
@@ -43,14 +43,16 @@ TEST_F(SectionTool, LayersLieInTheMiddlesOfEqualParts) {
   EXPECT_THAT(content_of(folder_ / "a.dxf"), HasSubstr("SECTION_3"));
 }
 
-TEST_F(SectionTool, FacesWithoutEdgesAreJoined) {
-  // Two trimmed squares that meet at x = 1, without common edges.
+TEST_F(SectionTool, PolylinesGoOnFromPatchToPatch) {
+  // Two squares that meet at x = 1.
   const auto square = [](double x) {
     const std::string a = std::to_string(x), b = std::to_string(x + 1);
-    return "{\"type\": \"bezier\", \"points\": [[[" + a + ",0,0],[" + a + ",1,0]],[[" + b + ",0,0],[" + b + ",1,0]]]}";
+    return "{\"kind\": \"bezier\", \"points\": [[[" + a + ",0,0],[" + a + ",1,0]],[[" + b + ",0,0],[" + b + ",1,0]]]}";
   };
-  folder_.file("m.json", "{\"surfaces\": [" + square(0) + "," + square(1) + "]}");
-  const json facts = json::parse(output_of({"section", "m.json", "--axis", "y", "--at", "0.5", "-o", "a.svg", "--json"}));
+  folder_.file("m.json",
+               "{\"format\": \"tessera\", \"version\": 1, \"surfaces\": [" + square(0) + "," + square(1) + "]}");
+  const json facts =
+      json::parse(output_of({"section", "m.json", "--axis", "y", "--at", "0.5", "-o", "a.svg", "--json"}));
   EXPECT_EQ(facts["polylines"], 1);
   EXPECT_NEAR(facts["length"], 2, 1e-12);
 }
@@ -59,7 +61,8 @@ TEST_F(SectionTool, AnySetOfThreadsAndStreamsGiveTheSameBytes) {
   for (const char* const format : {"svg", "dxf", "ply"}) {
     const std::string name = std::string("a.") + format;
     output_of({"section", teapot, "--layers", "50", "-o", name, "--threads", "1"});
-    const ToolRun streamed = run({"section", teapot, "--layers", "50", "-o", "-", "--format", format, "--threads", "4"});
+    const ToolRun streamed =
+        run({"section", teapot, "--layers", "50", "-o", "-", "--format", format, "--threads", "4"});
     EXPECT_EQ(streamed.status, 0);
     EXPECT_EQ(streamed.output, content_of(folder_ / name)) << format;
     EXPECT_THAT(streamed.errors, HasSubstr("-: 50 planes, "));

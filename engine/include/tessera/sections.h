@@ -47,10 +47,10 @@ struct SectionOptions {
 
 /// A point of a polyline. It lies on its patch, and in the plane, both up to rounding.
 struct SectionPoint {
-  Vec3 position;              ///< in the model
-  double u = 0, v = 0;        ///< in the parameters of the patch's surface: within PatchSource::domain
-  std::uint32_t patch = 0;    ///< the patch of the point and of the segment that follows it
-  bool bridges_gap = false;   ///< whether the segment that follows crosses a gap between two faces, on neither
+  Vec3 position;             ///< in the model
+  double u = 0, v = 0;       ///< in the parameters of the patch's surface: within PatchSource::domain
+  std::uint32_t patch = 0;   ///< the patch of the point and of the segment that follows it
+  bool bridges_gap = false;  ///< whether the segment that follows crosses a gap between two faces, on neither
 };
 
 /// A polyline of a section: points[first] to points[first + count - 1]. Its direction means nothing.
@@ -76,7 +76,7 @@ struct SectionContact {
 
 /// The section of one plane.
 struct PlaneSection {
-  double offset = 0;  ///< of the plane, as the caller states it
+  double offset = 0;                                   ///< of the plane, as the caller states it
   std::size_t first_polyline = 0, polyline_count = 0;  ///< a range of Sections::polylines
   std::size_t first_contact = 0, contact_count = 0;    ///< a range of Sections::contacts
   std::size_t first_coplanar = 0, coplanar_count = 0;  ///< a range of Sections::coplanar

@@ -19,13 +19,13 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// How curves of equal height run through a part of a patch.
 enum class CellKind : std::uint8_t {
-  open,        ///< not known: the part must be divided
-  empty,       ///< no plane meets it
-  over_u,      ///< one graph over u
-  over_v,      ///< one graph over v
-  along_u,     ///< lines of constant v: the height is the same along u
-  along_v,     ///< lines of constant u
-  tiny,        ///< anything; it is smaller than Levels::point_size, or no longer divided
+  open,     ///< not known: the part must be divided
+  empty,    ///< no plane meets it
+  over_u,   ///< one graph over u
+  over_v,   ///< one graph over v
+  along_u,  ///< lines of constant v: the height is the same along u
+  along_v,  ///< lines of constant u
+  tiny,     ///< anything; it is smaller than Levels::point_size, or no longer divided
 };
 constexpr bool runs_over_u(CellKind kind) { return kind == CellKind::over_u || kind == CellKind::along_u; }
 
@@ -63,7 +63,7 @@ class CellNet {
   int m_, n_;
   std::vector<Vec3> points_;
   std::vector<double> weights_, heights_;
-  double flat_ = -1;       ///< within how much of a plane the whole patch lies; negative: it is not flat
+  double flat_ = -1;  ///< within how much of a plane the whole patch lies; negative: it is not flat
   Vec3 flat_normal_;
 };
 

@@ -36,8 +36,7 @@ const SectionPoint& EndLinks::point(std::uint32_t end) const {
   return points_[strand.first + (end % 2 == 0 ? 0 : strand.count - 1)];
 }
 
-void EndLinks::join(std::span<const Strand> strands, std::span<const SectionPoint> points,
-                    const LinkOptions& options) {
+void EndLinks::join(std::span<const Strand> strands, std::span<const SectionPoint> points, const LinkOptions& options) {
   strands_ = strands;
   points_ = points;
   largest_gap_ = 0;
@@ -99,7 +98,8 @@ void EndLinks::join_near(double distance) {
     for (std::size_t next = k + 1; next < ends_.size() && key(ends_[next]) - key(ends_[k]) <= distance; ++next) {
       const double found = length(point(ends_[k]).position - point(ends_[next]).position);
       const bool is_own = ends_[k] / 2 == ends_[next] / 2;  // a strand no longer than this stays open
-      if (found <= distance && !(is_own && strands_[ends_[k] / 2].count <= 2)) pairs_.push_back({found, ends_[k], ends_[next]});
+      if (found <= distance && !(is_own && strands_[ends_[k] / 2].count <= 2))
+        pairs_.push_back({found, ends_[k], ends_[next]});
     }
   join_pairs();
 }

@@ -50,7 +50,8 @@ Vec3 HeightPatch::position(const ParameterPoint& at) const {
   for (int k = x; k < (rational_ ? 5 : 3); ++k) {
     reduce(k, over_u, over_u ? u.data() : v.data(), curve.data());
     const double* const basis = over_u ? v.data() : u.data();
-    for (int i = 0; i <= (over_u ? n_ : m_); ++i) sums[static_cast<std::size_t>(k)] += basis[i] * curve[static_cast<std::size_t>(i)];
+    for (int i = 0; i <= (over_u ? n_ : m_); ++i)
+      sums[static_cast<std::size_t>(k)] += basis[i] * curve[static_cast<std::size_t>(i)];
   }
   const Vec3 sum{sums[0], sums[1], sums[2]};
   return origin_ + (rational_ ? (1 / sums[w]) * sum : sum);
@@ -83,8 +84,7 @@ double HeightPatch::solve(const double* heights, const double* weights, int degr
   return t;
 }
 
-HeightPoint HeightPatch::point(bool over_u, double along, double height, double low, double high,
-                               double guess) const {
+HeightPoint HeightPatch::point(bool over_u, double along, double height, double low, double high, double guess) const {
   std::array<double, max_degree + 1> basis, heights, weights, curve;
   bernstein_values(over_u ? m_ : n_, along, basis.data());
   reduce(h, over_u, basis.data(), heights.data());
@@ -98,10 +98,12 @@ HeightPoint HeightPatch::point(bool over_u, double along, double height, double 
   double weight = rational_ ? 0 : 1;
   for (std::size_t k = 0; k < 3; ++k) {
     reduce(static_cast<int>(k), over_u, basis.data(), curve.data());
-    for (int i = 0; i <= degree; ++i) sums[k] += other[static_cast<std::size_t>(i)] * curve[static_cast<std::size_t>(i)];
+    for (int i = 0; i <= degree; ++i)
+      sums[k] += other[static_cast<std::size_t>(i)] * curve[static_cast<std::size_t>(i)];
   }
   if (rational_)
-    for (int i = 0; i <= degree; ++i) weight += other[static_cast<std::size_t>(i)] * weights[static_cast<std::size_t>(i)];
+    for (int i = 0; i <= degree; ++i)
+      weight += other[static_cast<std::size_t>(i)] * weights[static_cast<std::size_t>(i)];
   const Vec3 sum{sums[0], sums[1], sums[2]};
   return {origin_ + (rational_ ? (1 / weight) * sum : sum),
           over_u ? ParameterPoint{along, across} : ParameterPoint{across, along}};

@@ -84,8 +84,9 @@ void LoopLines::find(const Level& level, std::vector<LoopHit>& hits) const {
       const PlaneBezier& curve = impl_of(*region_).pieces[pieces_[k]].curve;
       LoopHit hit{.piece = pieces_[k], .interval = static_cast<std::uint32_t>(i)};
       hit.place = lines_[k].root(i, level.at);
-      const ParameterPoint at = hit.place == 1 ? curve.points.back()
-                                               : curve.points.front() + relative_point(curve, curve.points.front(), hit.place);
+      const ParameterPoint at = hit.place == 1
+                                    ? curve.points.back()
+                                    : curve.points.front() + relative_point(curve, curve.points.front(), hit.place);
       hit.at = {std::clamp(domain_.local_u(at.u), 0.0, 1.0), std::clamp(domain_.local_v(at.v), 0.0, 1.0)};
       hits.push_back(hit);
     }

@@ -49,9 +49,7 @@ class LoopLines {
 
   /// Finds where a plane meets the pieces.
   void find(const Level& level, std::vector<LoopHit>& hits) const;
-  TrimSide locate(const ParameterPoint& at) const {
-    return region_->locate(domain_.u_at(at.u), domain_.v_at(at.v));
-  }
+  TrimSide locate(const ParameterPoint& at) const { return region_->locate(domain_.u_at(at.u), domain_.v_at(at.v)); }
   /// Whether all points of pieces are proven to be found.
   bool is_proven() const { return is_proven_; }
 

@@ -49,12 +49,12 @@ class PatchArcs {
   const PatchCells* cells_ = nullptr;
   Level level_{};
   double contact_ = 0;
-  std::uint32_t turn_ = 0;                    ///< the number of this call
-  std::vector<std::uint32_t> made_;           ///< by line: the last call that made it
-  std::vector<std::uint8_t> above_;           ///< by line and place
-  std::vector<double> roots_;                 ///< by interval
-  std::vector<std::uint32_t> crossing_of_;    ///< by interval
-  std::vector<std::uint32_t> around_;         ///< crossings of a cell
+  std::uint32_t turn_ = 0;                  ///< the number of this call
+  std::vector<std::uint32_t> made_;         ///< by line: the last call that made it
+  std::vector<std::uint8_t> above_;         ///< by line and place
+  std::vector<double> roots_;               ///< by interval
+  std::vector<std::uint32_t> crossing_of_;  ///< by interval
+  std::vector<std::uint32_t> around_;       ///< crossings of a cell
   std::vector<std::uint32_t> to_visit_;
   std::vector<LineCrossing> crossings_;
   std::vector<CellArc> arcs_;

@@ -83,8 +83,8 @@ void PatchCells::divide(Part part, const Levels& levels, std::deque<Part>& parts
   cut(along_u ? Side::v0 : Side::u0);
   cut(along_u ? Side::v1 : Side::u1);
   (along_u ? low.domain.u1 : low.domain.v1) = (along_u ? high.domain.u0 : high.domain.v0) = at;
-  low.sides[static_cast<std::size_t>(far)] = high.sides[static_cast<std::size_t>(near)] = {
-      line, lines_[line].from, lines_[line].to};
+  low.sides[static_cast<std::size_t>(far)] =
+      high.sides[static_cast<std::size_t>(near)] = {line, lines_[line].from, lines_[line].to};
   nodes_.push_back(low);
   nodes_.push_back(high);
   parts.push_back({std::move(part.net), first, part.depth + 1});

@@ -19,12 +19,12 @@ namespace tessera { inline namespace abi_0_1 {
 /// A line between cells, or a side of the patch.
 struct CellLine {
   const HeightLine* heights = nullptr;
-  bool reversed = false;            ///< whether the places of `heights` run from `to` to `from`
-  bool along_u = false;             ///< whether it runs along u
-  double across = 0;                ///< the patch's other parameter
-  double from = 0, to = 1;          ///< the patch's parameter at its ends, growing
+  bool reversed = false;                 ///< whether the places of `heights` run from `to` to `from`
+  bool along_u = false;                  ///< whether it runs along u
+  double across = 0;                     ///< the patch's other parameter
+  double from = 0, to = 1;               ///< the patch's parameter at its ends, growing
   std::array<std::uint32_t, 2> on = {};  ///< the lines that its ends lie on; none for sides of the patch
-  std::size_t first_interval = 0;   ///< of all intervals of the patch's lines
+  std::size_t first_interval = 0;        ///< of all intervals of the patch's lines
 
   double place(double parameter) const {
     const double share = (parameter - from) / (to - from);
@@ -40,14 +40,14 @@ struct CellSide {
 };
 
 struct CellNode {
-  Domain domain;                     ///< in the patch's parameters from 0 to 1
-  double low = 0, high = 0;          ///< heights
-  std::uint32_t first_child = 0;     ///< of two that follow each other; 0: it is a cell
-  bool divided_u = false;            ///< whether they are beside each other along u
-  CellKind kind = CellKind::empty;   ///< if it is a cell
-  bool is_shallow = false;           ///< whether its division was ended without a proof
+  Domain domain;                    ///< in the patch's parameters from 0 to 1
+  double low = 0, high = 0;         ///< heights
+  std::uint32_t first_child = 0;    ///< of two that follow each other; 0: it is a cell
+  bool divided_u = false;           ///< whether they are beside each other along u
+  CellKind kind = CellKind::empty;  ///< if it is a cell
+  bool is_shallow = false;          ///< whether its division was ended without a proof
   double bending = 0, slack = 0, diameter = 0;
-  std::array<CellSide, 4> sides;     ///< as Side numbers them
+  std::array<CellSide, 4> sides;  ///< as Side numbers them
 };
 
 /// A border of a patch: heights that patches beside it share.

@@ -116,8 +116,8 @@ void PreparedSet::make(const PatchSet::Impl& set, const Levels& levels, std::siz
     const auto cut = std::ranges::lower_bound(set.trims->cuts, sides.patch, {}, &PatchTrims::Cut::patch);
     if (cut->region != region) vertices = {};
     region = cut->region;
-    made.loops.emplace(patch, made.domain, regions_[region], impl_of(std::as_const(regions_[region])).pieces_of(cut->place), levels,
-                       vertices);
+    made.loops.emplace(patch, made.domain, regions_[region],
+                       impl_of(std::as_const(regions_[region])).pieces_of(cut->place), levels, vertices);
   }
 }
 

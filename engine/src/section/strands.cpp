@@ -54,8 +54,9 @@ double StrandTracer::distance_to(std::uint32_t index, const ParameterPoint& at, 
   place = std::clamp(along(over_u, at), low, high);
   const double beyond = std::abs(place - along(over_u, at));
   const double from = along(over_u, a), to = along(over_u, b);
-  double other = from == to ? across(over_u, a)
-                            : across(over_u, a) + (across(over_u, b) - across(over_u, a)) * ((place - from) / (to - from));
+  double other = from == to
+                     ? across(over_u, a)
+                     : across(over_u, a) + (across(over_u, b) - across(over_u, a)) * ((place - from) / (to - from));
   if (cell.kind == CellKind::over_u || cell.kind == CellKind::over_v) {
     const double least = over_u ? cell.domain.v0 : cell.domain.u0, most = over_u ? cell.domain.v1 : cell.domain.u1;
     other = across(over_u, patch_->points.point(over_u, place, level_.at, least, most, other).at);
@@ -72,8 +73,7 @@ void StrandTracer::attach_hits() {
     for (std::uint32_t arc = 0; arc < count && least > 0; ++arc) {
       const Domain& domain = cell_of(arc).domain;
       const ParameterPoint& at = hits_[hit].at;
-      const double outside =
-          std::max({domain.u0 - at.u, at.u - domain.u1, domain.v0 - at.v, at.v - domain.v1, 0.0});
+      const double outside = std::max({domain.u0 - at.u, at.u - domain.u1, domain.v0 - at.v, at.v - domain.v1, 0.0});
       if (outside >= least) continue;
       double place = 0;
       const double distance = count == 1 ? (distance_to(arc, at, place), 0) : distance_to(arc, at, place);
@@ -221,7 +221,8 @@ StrandEnd StrandTracer::end_at(const Stop& stop) const {
   const LineCrossing& crossing = arcs_.crossings()[stop.crossing];
   if (crossing.line >= 4) return {};
   const auto side = static_cast<Side>(crossing.line);
-  return {StrandEnd::On::border, side, patch_->borders[crossing.line], crossing.interval, along_side(side, crossing.at)};
+  return {StrandEnd::On::border, side, patch_->borders[crossing.line], crossing.interval,
+          along_side(side, crossing.at)};
 }
 
 void StrandTracer::append_point(const Vec3& position, const ParameterPoint& at) {

@@ -60,9 +60,9 @@ class StrandTracer {
   /// A point where one part of a chain ends and the next begins.
   struct Stop {
     ParameterPoint at;
-    std::uint32_t arc;                ///< that the following part belongs to
-    std::uint32_t crossing = no_id;   ///< that it is
-    std::uint32_t hit = no_id;        ///< of a loop, that it is
+    std::uint32_t arc;               ///< that the following part belongs to
+    std::uint32_t crossing = no_id;  ///< that it is
+    std::uint32_t hit = no_id;       ///< of a loop, that it is
   };
   struct ArcHit {
     std::uint32_t arc, hit;

@@ -111,8 +111,8 @@ Status run_section(const Job& job, const SectionCommandOptions& options, const C
   });
   if (!sections) return sections.status();
   Status status = timings.measure("write", [&] {
-    const Status written = write_sections(*sections, format_path(job.output, options.write.format), *out,
-                                          {.unit = loaded->model.unit});
+    const Status written =
+        write_sections(*sections, format_path(job.output, options.write.format), *out, {.unit = loaded->model.unit});
     return written.ok() ? out->commit() : written;
   });
   if (status.ok()) status = report(job, common, *loaded, set, *sections, timings);
@@ -127,15 +127,15 @@ std::string fault_of_section_file(const std::string& path) {
 void add_planes(Command& command, SectionCommandOptions& options) {
   command.begin_group("Planes (one of)");
   const std::string form = "A,B,C,D";
-  Option& plane = command.add("--plane", form, "The plane A x + B y + C z = D", [&options, form](const std::string& text) {
-    const std::vector<double> n = parse_numbers("--plane", text, 4, form);
-    options.plane = Plane{{n[0], n[1], n[2]}, n[3]};
-    if (options.plane->normal == Vec3{}) throw UsageError("--plane", "A, B and C must not all be 0");
-  });
-  Option& at = command.add("--at", "H", "The plane at this coordinate of the axis; may be repeated",
-                           [&options](const std::string& text) {
-                             options.at.push_back(parse_numbers("--at", text, 1, "H").front());
-                           });
+  Option& plane =
+      command.add("--plane", form, "The plane A x + B y + C z = D", [&options, form](const std::string& text) {
+        const std::vector<double> n = parse_numbers("--plane", text, 4, form);
+        options.plane = Plane{{n[0], n[1], n[2]}, n[3]};
+        if (options.plane->normal == Vec3{}) throw UsageError("--plane", "A, B and C must not all be 0");
+      });
+  Option& at = command.add(
+      "--at", "H", "The plane at this coordinate of the axis; may be repeated",
+      [&options](const std::string& text) { options.at.push_back(parse_numbers("--at", text, 1, "H").front()); });
   at.repeated = true;
   Option& layers = command.add_count(
       "--layers", "N", "N planes across the axis, in the middles of equal parts of the model, 1 to 1000000", 1, 1000000,

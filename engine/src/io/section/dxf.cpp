@@ -97,8 +97,8 @@ void write_dxf(const Sections& sections, OutputFile& out) {
     const PlaneSection& plane = sections.planes[k];
     for (std::size_t line = plane.first_polyline; line < plane.first_polyline + plane.polyline_count; ++line) {
       const SectionPolyline& polyline = sections.polylines[line];
-      write_polyline(std::span(sections.points).subspan(polyline.first, polyline.count), polyline.closed,
-                     layer_name(k), dxf);
+      write_polyline(std::span(sections.points).subspan(polyline.first, polyline.count), polyline.closed, layer_name(k),
+                     dxf);
     }
   }
   dxf.pair(0, "ENDSEC");

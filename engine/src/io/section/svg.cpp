@@ -68,8 +68,9 @@ void write_svg(const Sections& sections, OutputFile& out, const SectionsFileOpti
   const double size = std::max({right - left, bottom - top, std::numeric_limits<double>::min()});
   const double margin = size / 50, width = right - left + 2 * margin, height = bottom - top + 2 * margin;
   const std::string unit = svg_unit(options.unit);
-  out.write("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\""
-            " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"");
+  out.write(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\""
+      " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"");
   out.write_number(width);
   out.write(unit + "\" height=\"");
   out.write_number(height);
