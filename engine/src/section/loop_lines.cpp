@@ -75,11 +75,14 @@ LoopLines::LoopLines(const BezierPatch& patch, const Domain& domain, const TrimR
   }
 }
 
-void LoopLines::find(const Level& level, std::vector<LoopHit>& hits) const {
+bool LoopLines::find(const Level& level, double contact, std::vector<LoopHit>& hits) const {
+  bool touches = false;
   hits.clear();
   for (std::size_t k = 0; k < lines_.size(); ++k) {
     const std::span<const double> heights = lines_[k].heights();
+    touches = touches || std::abs(heights.front() - level.at) <= contact;
     for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
+      touches = touches || std::abs(heights[i + 1] - level.at) <= contact;
       if (level.is_above(heights[i]) == level.is_above(heights[i + 1])) continue;
       const PlaneBezier& curve = impl_of(*region_).pieces[pieces_[k]].curve;
       LoopHit hit{.piece = pieces_[k], .interval = static_cast<std::uint32_t>(i)};
@@ -91,6 +94,7 @@ void LoopLines::find(const Level& level, std::vector<LoopHit>& hits) const {
       hits.push_back(hit);
     }
   }
+  return touches;
 }
 
 }}  // namespace tessera::abi_0_1

@@ -47,8 +47,8 @@ class LoopLines {
   LoopLines(const BezierPatch& patch, const Domain& domain, const TrimRegion& region,
             std::span<const std::uint32_t> pieces, const Levels& levels, LoopVertices& vertices);
 
-  /// Finds where a plane meets the pieces.
-  void find(const Level& level, std::vector<LoopHit>& hits) const;
+  /// Finds where a plane meets the pieces. Returns whether the end of an interval of a piece is within `contact` of it.
+  bool find(const Level& level, double contact, std::vector<LoopHit>& hits) const;
   TrimSide locate(const ParameterPoint& at) const { return region_->locate(domain_.u_at(at.u), domain_.v_at(at.v)); }
   /// Whether all points of pieces are proven to be found.
   bool is_proven() const { return is_proven_; }

@@ -43,7 +43,7 @@ bool PlaneTracer::trace_limit(std::size_t level, PlaneLimit limit, TracedPlane& 
   for (const std::uint32_t k : task_.set->of_level(level)) {
     const PreparedPatch& patch = task_.set->patch(k);
     strand_tracer_.trace(patch, {at, side}, points_, strands_);
-    is_special = is_special || !strand_tracer_.arcs().special().empty();
+    is_special = is_special || strand_tracer_.is_special();
     add_contacts(patch, traced);
   }
   links_.join(strands_, points_, task_.links);

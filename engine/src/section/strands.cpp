@@ -29,12 +29,12 @@ void StrandTracer::trace(const PreparedPatch& patch, const Level& level, std::ve
   points_ = &points;
   strands_ = &strands;
   arcs_.find(patch.cells, level, levels_.contact);
-  if (arcs_.arcs().empty()) return;
   arc_hits_.clear();
-  if (patch.loops) {
-    patch.loops->find(level, hits_);
-    attach_hits();
-  }
+  hits_.clear();
+  is_special_ = patch.loops && patch.loops->find(level, 2 * levels_.contact, hits_);
+  is_special_ = is_special_ || !arcs_.special().empty();
+  if (arcs_.arcs().empty()) return;
+  attach_hits();
   is_done_.assign(arcs_.arcs().size(), 0);
   const std::span<const LineCrossing> crossings = arcs_.crossings();
   for (std::uint32_t k = 0; k < crossings.size(); ++k)
@@ -172,6 +172,9 @@ void StrandTracer::find_kept(std::span<const std::size_t> marks) {
 }
 
 TrimSide StrandTracer::side_of(std::size_t stop) const {
+  // Where the plane runs along a loop, rounding would decide.
+  if (is_special_)
+    if (const TrimSide side = side_beside(between(stop, 0.5, -1).at); side != TrimSide::border) return side;
   for (const double share : {0.5, 0.3125, 0.6875}) {
     const TrimSide side = patch_->loops->locate(between(stop, share, -1).at);
     if (side != TrimSide::border) return side;
@@ -179,19 +182,20 @@ TrimSide StrandTracer::side_of(std::size_t stop) const {
   return side_beside(between(stop, 0.5, -1).at);
 }
 
-/// Returns the side of the points beside one of a curve that runs along a loop, towards the planes whose limit counts.
+/// Returns the side of a point beside one of the section, towards the planes whose limit counts, and far enough to be
+/// beside a loop that runs along the plane.
 TrimSide StrandTracer::side_beside(const ParameterPoint& at) const {
   const double sign = level_.side < level_.at ? -1 : 1;
-  for (const double step : {1e-9, 1e-7, 1e-5, 1e-3}) {
+  for (const double step : {1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
     ParameterPoint best = at;
-    double farthest = 0;
+    double farthest = 16 * levels_.contact;
     for (const ParameterPoint& to : {ParameterPoint{at.u - step, at.v}, ParameterPoint{at.u + step, at.v},
                                      ParameterPoint{at.u, at.v - step}, ParameterPoint{at.u, at.v + step}}) {
       const ParameterPoint inside{std::clamp(to.u, 0.0, 1.0), std::clamp(to.v, 0.0, 1.0)};
       const double height = sign * (levels_.height(patch_->points.position(inside)) - level_.at);
       if (height > farthest) farthest = height, best = inside;
     }
-    if (farthest == 0) continue;
+    if (best == at) continue;
     if (const TrimSide side = patch_->loops->locate(best); side != TrimSide::border) return side;
   }
   return TrimSide::border;

@@ -51,6 +51,8 @@ class StrandTracer {
   /// Appends the strands of a patch and their points.
   void trace(const PreparedPatch& patch, const Level& level, std::vector<SectionPoint>& points,
              std::vector<Strand>& strands);
+  /// Whether the last patch has a place that lies in the plane, so that the limits from both sides may differ.
+  bool is_special() const { return is_special_; }
   /// The cells of the last call.
   const PatchArcs& arcs() const { return arcs_; }
   /// Whether strands have lost points, because there would be more than Levels::max_points.
@@ -87,7 +89,7 @@ class StrandTracer {
   const Levels& levels_;
   const PreparedPatch* patch_ = nullptr;
   Level level_{};
-  bool is_full_ = false;
+  bool is_full_ = false, is_special_ = false;
   std::vector<SectionPoint>* points_ = nullptr;
   std::vector<Strand>* strands_ = nullptr;
   PatchArcs arcs_;
