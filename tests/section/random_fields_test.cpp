@@ -110,7 +110,7 @@ TEST(SectionOfRandomFields, NoBranchIsMissed) {
     }
     if (HasFailure()) FAIL() << "trial " << trial;
   }
-  EXPECT_GT(found, 10000u);
+  EXPECT_GT(found, 5000u);
   EXPECT_GT(closed, 5u);
   EXPECT_GT(open, 50u);
 }
@@ -135,7 +135,7 @@ TEST(SectionOfRandomFields, SmallLoopsAreFound) {
   const std::vector<Vec3> points{{0, 0, 0.5}, {0, 0.5, 0}, {0, 1, 0.5}, {0.5, 0, 0}, {0.5, 0.5, -0.5},
                                  {0.5, 1, 0}, {1, 0, 0.5}, {1, 0.5, 0}, {1, 1, 0.5}};
   const PatchSet set = value_of(PatchSet::make(std::vector{polynomial(2, 2, points)}));  // z = (x-1/2)^2 + (y-1/2)^2
-  const Sections made = value_of(make_section(set, {{0, 0, 1}, 1e-10}, {.tolerance = 1e-7}));
+  const Sections made = value_of(make_section(set, {{0, 0, 1}, 1e-10}, {.tolerance = 1e-7, .contact = 0}));
   ASSERT_EQ(made.polylines.size(), 1u);
   EXPECT_TRUE(made.polylines[0].closed);
   EXPECT_NEAR(made.polylines[0].length, 2 * std::numbers::pi * 1e-5, 1e-6);

@@ -11,7 +11,7 @@ PatchSet set_of(const std::vector<ModelSurface>& faces) { return value_of(make_p
 
 Sections cut(const PatchSet& set, const Vec3& normal, double offset, SectionOptions options = {}) {
   const Sections made = value_of(make_section(set, {normal, offset}, options));
-  expect_sound(set, made, 1e-11, length(normal));
+  expect_sound(set, made, 2e-10, length(normal));
   return made;
 }
 

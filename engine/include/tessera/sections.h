@@ -38,14 +38,16 @@ struct SectionOptions {
   std::optional<double> tolerance = {};
   PlaneLimit limit = PlaneLimit::automatic;  ///< where a plane runs along a face
   /// The height within which a point counts as one of the plane's when it is decided what runs along the plane; at
-  /// least 0. 1e-12 of the size of the set and of its distance from the origin by default.
+  /// least 0. By default 1e-10 of the size of the set and of its distance from the origin, or less for a tolerance that
+  /// is finer than 1e-4 of these. Files with coarse numbers need more for planes that run along their faces.
   std::optional<double> contact = {};
-  /// How far ends on one edge of two faces may be apart to be joined; at least 0. 5e-3 of the size of the set by default.
+  /// How far ends on one edge of two faces may be apart to be joined; at least 0. 5e-3 of the set's size by default.
   std::optional<double> max_gap = {};
   std::size_t max_points = std::size_t{1} << 28;  ///< of all polylines together
 };
 
-/// A point of a polyline. It lies on its patch, and in the plane, both up to rounding.
+/// A point of a polyline. It lies on its patch and in the plane, up to rounding; where the plane runs along the surface
+/// or is tangent to it, within SectionOptions::contact of the plane.
 struct SectionPoint {
   Vec3 position;             ///< in the model
   double u = 0, v = 0;       ///< in the parameters of the patch's surface: within PatchSource::domain
@@ -112,7 +114,8 @@ struct Sections {
 /// borders of patches with equal control points are joined, then those on one edge of two faces (make_patch_set() of a
 /// model with shapes), then others that are no farther apart than the tolerance. Points and bounds are in double, also
 /// far from the origin. The bound states how far chords are from the section of the patches, and what joining ends
-/// moved; PatchSet::fit_error() comes on top. The same bytes for any number of threads.
+/// moved; PatchSet::fit_error() comes on top. Where a plane is tangent to a surface, it is that of a plane at most
+/// SectionOptions::contact beside it. The same bytes for any number of threads.
 ///
 /// Errors: invalid_argument (normal, options; index = the offset: one that is not finite; more points than max_points),
 /// cancelled, out_of_memory. Memory: about 1 kB per patch that a plane meets, and 48 bytes per point.

@@ -59,10 +59,12 @@ SortedLevels sorted_levels(const PatchSet::Impl& set, const Vec3& normal, std::s
   sorted.max_gap = options.max_gap.value_or(5e-3 * size);
   // A quarter is left for points that are joined.
   levels.chord = 0.74 * sorted.tolerance;
-  levels.contact = options.contact.value_or(1e-12 * reach);
+  // A plane that is tangent to a surface as curved as the model is large, and one as far beside it as `contact`, have
+  // sections that are apart by about the square root of contact times the size. Let it be a part of the tolerance.
+  const double coarsest = reach > 0 ? sorted.tolerance / (64 * reach) * sorted.tolerance : 0;
+  levels.contact = options.contact.value_or(std::min(1e-10 * reach, coarsest));
   levels.rounding = 0x1p-50 * reach;
   levels.contact = std::max(levels.contact, 4 * levels.rounding);
-  // A plane that touches a surface as curved as the model is large has a limit of this size.
   levels.point_size = std::min(sorted.tolerance, 4 * std::sqrt(levels.contact * reach));
   levels.max_points = options.max_points;
   std::vector<double> heights;

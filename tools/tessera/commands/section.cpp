@@ -11,7 +11,7 @@
 #include "console/console.h"
 #include "console/output.h"
 #include "console/progress.h"
-#include "io/section/section_output.h"
+#include "io/format/output_formats.h"
 #include "line/arguments.h"
 #include "stages/write.h"
 #include "tessera/sections.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/section/section_output.h"
+#include "io/section/section_formats.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "io/section/section_output.h"
+#include "io/section/section_formats.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -4,7 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "io/section/section_output.h"
+#include "io/format/output_formats.h"
+#include "io/section/section_formats.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 
