@@ -114,6 +114,10 @@ void fill_model_commands(Table& table) {
   tool.row(1, {"measure", "huge.bpt"});
   tool.row(1, {"check", "teapot.bpt"});
   tool.row(2, {"convert", "teapot.bpt", "-o", "a.step"});
+  tool.row(2, {"section", "teapot.bpt", "-o", "a.step", "--at", "1"});
+  tool.row(2, {"section", "teapot.bpt", "-o", "a.svg"});
+  tool.row(2, {"section", "teapot.bpt", "-o", "a.svg", "--plane", "0,0,0,1"});
+  tool.row(1, {"section", "teapot.bpt", "-o", "a.svg", "--at", "1", "--tolerance", "1e-200"});
 
   tool.file("header.csv", "a,b,c\n1,2,3\n");
   tool.file("short.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0\n");

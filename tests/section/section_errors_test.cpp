@@ -122,6 +122,23 @@ TEST(SectionErrors, FarFromTheOriginNothingIsLost) {
   for (const SectionPoint& p : made.points) EXPECT_NEAR(dot(normal, p.position - far), 0, 1e-8);
 }
 
+TEST(SectionErrors, PatchesInThePlaneEndAtOnce) {
+  // Weights that are no products, and heights that differ by less than the contact: no slope is proven.
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      points.push_back({double(i), double(j), 1 + 1e-12 * ((i * 7 + j * 5) % 3)});
+      weights.push_back(1 + 0.1 * ((i * 3 + j * j) % 4));
+    }
+  const PatchSet set = value_of(PatchSet::make(std::vector{value_of(BezierPatch::rational(3, 3, points, weights))}));
+  const Sections made = value_of(make_section(set, {{0, 0, 1}, 1}, {.contact = 1e-9}));
+  EXPECT_EQ(made.polylines.size(), 0u);
+  EXPECT_EQ(made.contacts.size(), 0u);
+  EXPECT_EQ(made.coplanar.size(), 1u);
+  EXPECT_TRUE(made.unproven.empty());
+}
+
 TEST(SectionErrors, PatchesThatArePointsOrLines) {
   const std::vector<Vec3> point(4, Vec3{1, 2, 3}), thin{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0, 1}};
   for (const std::vector<Vec3>& points : {point, thin}) {

@@ -95,7 +95,7 @@ struct Sections {
   std::vector<PlaneSection> planes;        ///< in the order of the offsets
   std::vector<SectionPolyline> polylines;  ///< plane by plane
   std::vector<SectionPoint> points;        ///< polyline by polyline
-  std::vector<SectionContact> contacts;    ///< plane by plane
+  std::vector<SectionContact> contacts;    ///< plane by plane, at most 1,000 of each
   /// Patches that lie in a plane, plane by plane. They have no polylines; their neighbours' make the outline.
   std::vector<std::uint32_t> coplanar;
   double tolerance = 0;     ///< SectionOptions::tolerance, or its default

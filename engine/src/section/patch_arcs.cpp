@@ -142,7 +142,7 @@ void PatchArcs::visit(std::uint32_t index) {
   around_.clear();
   for (const Side side : all_sides) add_side(cell.sides[static_cast<std::size_t>(side)], is_backward(side));
   if (cell.kind == CellKind::tiny) {
-    (around_.empty() ? touched_ : points_).push_back(index);
+    if (!cell.is_shallow) (around_.empty() ? touched_ : points_).push_back(index);
   }
   if (around_.size() > 2 && cell.kind != CellKind::tiny) sort_over(cell);
   for (std::size_t k = 0; k + 1 < around_.size(); k += 2) add_arc(index, around_[k], around_[k + 1]);

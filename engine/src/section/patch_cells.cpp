@@ -60,6 +60,12 @@ void PatchCells::divide(Part part, const Levels& levels, std::deque<Part>& parts
   node.kind = facts.kind;
   node.bending = facts.bending, node.slack = facts.slack, node.diameter = facts.diameter;
   if (is_simple(facts, levels, part.depth)) return;
+  if (facts.high - facts.low <= levels.contact) {
+    // It lies in the plane as far as anyone can tell.
+    node.kind = CellKind::tiny;
+    node.is_shallow = facts.diameter > levels.point_size;
+    return;
+  }
   if (facts.diameter <= levels.point_size || part.depth >= max_depth || nodes_.size() >= max_cells) {
     if (node.kind == CellKind::open) node.kind = CellKind::tiny;
     node.is_shallow = facts.diameter > levels.point_size;

@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// The contacts of a plane that are listed. A curve of contact that no parameter follows would have thousands.
+constexpr std::size_t max_contacts = 1000;
+
+}  // namespace
 
 void PlaneTracer::trace(std::size_t level, TracedPlane& traced) {
   const Levels& levels = *task_.levels;
@@ -26,7 +32,7 @@ void PlaneTracer::trace(std::size_t level, TracedPlane& traced) {
   std::ranges::stable_sort(traced.contacts, {}, &SectionContact::kind);
   std::vector<SectionContact> distinct;
   for (const SectionContact& contact : traced.contacts)
-    if (std::ranges::none_of(distinct, [&](const SectionContact& of) {
+    if (distinct.size() < max_contacts && std::ranges::none_of(distinct, [&](const SectionContact& of) {
           return length(of.position - contact.position) <= 4 * levels.point_size;
         }))
       distinct.push_back(contact);
