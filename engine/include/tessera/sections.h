@@ -100,8 +100,9 @@ struct Sections {
   std::vector<std::uint32_t> coplanar;
   double tolerance = 0;     ///< SectionOptions::tolerance, or its default
   double contact_size = 0;  ///< polylines no larger than this are contacts
-  /// Patches whose section is not proven to be complete: they have so many places where the height has no slope that
-  /// their division into simple parts was ended. Growing.
+  /// Patches whose section is not proven to be complete, growing; the bound of a plane that meets one may exceed the
+  /// tolerance. They have so many places where the height has no slope that their division into simple parts was
+  /// ended, or parts that lie in a plane as far as doubles can tell.
   std::vector<std::uint32_t> unproven;
 };
 

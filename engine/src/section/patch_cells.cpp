@@ -61,9 +61,10 @@ void PatchCells::divide(Part part, const Levels& levels, std::deque<Part>& parts
   node.bending = facts.bending, node.slack = facts.slack, node.diameter = facts.diameter;
   if (is_simple(facts, levels, part.depth)) return;
   if (facts.high - facts.low <= levels.contact) {
-    // It lies in the plane as far as anyone can tell.
+    // It lies in the plane as far as anyone can tell. A whole patch has no curves then; a part of one may have some.
     node.kind = CellKind::tiny;
     node.is_shallow = facts.diameter > levels.point_size;
+    is_proven_ = is_proven_ && (part.node == 0 || !node.is_shallow);
     return;
   }
   if (facts.diameter <= levels.point_size || part.depth >= max_depth || nodes_.size() >= max_cells) {

@@ -67,7 +67,7 @@ class PatchCells {
   /// Whether the division of a cell or a line was ended before anything was proven.
   bool is_proven() const { return is_proven_; }
 
-  static constexpr std::size_t max_cells = 1 << 14;
+  static constexpr std::size_t max_cells = 1 << 13;
 
  private:
   struct Part;
