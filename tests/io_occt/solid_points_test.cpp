@@ -25,7 +25,7 @@ struct SolidTally {
   double ours = 0, theirs = 0;  ///< seconds
 };
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double clock_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Whether a point is in an odd number of solids, or -1 if the classifier says that it is on one, or fails.
 class Classifiers {
@@ -92,14 +92,14 @@ void compare(const std::filesystem::path& path, SolidTally& all) {
     at.push_back(box.centre() + Vec3{share.x * size.x, share.y * size.y, share.z * size.z});
   }
   std::vector<Containment> found(count);
-  double start = seconds();
+  double start = clock_seconds();
   ASSERT_TRUE(solid->contains(at, found).ok());
-  all.ours += seconds() - start;
+  all.ours += clock_seconds() - start;
   std::size_t differ = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    start = seconds();
+    start = clock_seconds();
     const int inside = theirs.is_inside(at[k]);
-    all.theirs += seconds() - start;
+    all.theirs += clock_seconds() - start;
     ++all.points, all.certified += found[k].certified, all.inside += found[k].side == PointSide::inside;
     if (inside < 0 || points->nearest(at[k]).distance < 1e-5 * box.diagonal()) {
       ++all.near;
