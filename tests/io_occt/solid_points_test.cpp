@@ -25,7 +25,9 @@ struct SolidTally {
   double ours = 0, theirs = 0;  ///< seconds
 };
 
-double clock_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double clock_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// Whether a point is in an odd number of solids, or -1 if the classifier says that it is on one, or fails.
 class Classifiers {
