@@ -114,6 +114,9 @@ void fill_model_commands(Table& table) {
   tool.row(1, {"measure", "huge.bpt"});
   tool.row(1, {"check", "teapot.bpt"});
   tool.row(2, {"convert", "teapot.bpt", "-o", "a.step"});
+  tool.row(2, {"project", "teapot.bpt", "-o", "a.csv"});
+  tool.row(1, {"project", "teapot.bpt", "-o", "a.csv", "--points", "missing.csv"});
+  tool.row(2, {"project", "teapot.bpt", "-o", "a.csv", "--points", "missing.csv", "--max-distance", "0"});
   tool.row(2, {"section", "teapot.bpt", "-o", "a.step", "--at", "1"});
   tool.row(2, {"section", "teapot.bpt", "-o", "a.svg"});
   tool.row(2, {"section", "teapot.bpt", "-o", "a.svg", "--plane", "0,0,0,1"});

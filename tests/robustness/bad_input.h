@@ -73,6 +73,7 @@ void fill_tessellations(Table& table);
 void fill_meshes(Table& table);
 void fill_rays(Table& table);
 void fill_batches(Table& table);
+void fill_queries(Table& table);
 void fill_readers(Table& table);
 void fill_files(Table& table);
 void fill_machine(Table& table);

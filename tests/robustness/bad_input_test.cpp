@@ -14,10 +14,10 @@
 namespace tessera::test { namespace {
 
 #ifdef TESSERA_HAS_RAY
-constexpr auto rays = fill_rays, batches = fill_batches;
+constexpr auto rays = fill_rays, batches = fill_batches, queries = fill_queries;
 #else
 constexpr void (*rays)(Table&) = nullptr;
-constexpr auto batches = rays;
+constexpr auto batches = rays, queries = rays;
 #endif
 #ifdef TESSERA_HAS_IO
 constexpr auto readers = fill_readers, files = fill_files;
@@ -52,6 +52,7 @@ constexpr Section sections[] = {{"Curves", fill_curves},
                                 {"Meshes", fill_meshes},
                                 {"Rays", rays},
                                 {"Batches of rays", batches},
+                                {"Nearest points and points inside", queries},
                                 {"Text of files", readers},
                                 {"Files", files},
                                 {"The machine", fill_machine},

@@ -169,6 +169,7 @@ void info_collect(const json& value, const std::string& path, std::set<std::stri
 TEST_F(Info, ThePageOfJsonIsWhole) {
   const std::string page = content_of(TESSERA_SOURCE_DIR "/tools/tessera/JSON.md");
   folder_.file("rays.csv", "ox,oy,oz,dx,dy,dz\n0,0,9,0,0,-1\n");
+  folder_.file("points.csv", "x,y,z\n0,0,9\n");
   const std::vector<std::pair<std::string, Names>> runs{
       {"info", {"info", teapot}},
       {"eval", {"eval", teapot, "--grid", "2x2", "--derivs", "2"}},
@@ -178,6 +179,7 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
       {"tessellate --tolerance", {"tessellate", teapot, "--angle", "30", "-o", "a.ply"}},
       {"convert", {"convert", teapot, "-o", "a.obj"}},
       {"section", {"section", teapot, "--at", "1", "-o", "a.svg"}},
+      {"project", {"project", teapot, "--points", "points.csv", "-o", "c.csv"}},
       {"raycast -o", {"raycast", teapot, "--size", "8x8", "--shade", "error", "-o", "a.png"}},
       {"raycast --rays", {"raycast", teapot, "--rays", "rays.csv", "--hits", "b.csv"}},
       {"check", {"check", "a.ply"}},

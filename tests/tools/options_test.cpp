@@ -65,6 +65,7 @@ TEST_F(CommonOptions, ThePictureIsTheSameForAnyNumberOfThreads) {
 }
 
 TEST_F(CommonOptions, TimingsAreToldOnRequest) {
+  folder_.file("p.csv", "x,y,z\n0,0,9\n");
   const std::vector<std::pair<Names, Names>> commands{
       {{"info", teapot}, {"read", "convert", "pack", "joined edges", "joins"}},
       {{"eval", teapot, "--grid", "2x2", "-o", "a.csv"}, {"read", "evaluate"}},
@@ -72,6 +73,8 @@ TEST_F(CommonOptions, TimingsAreToldOnRequest) {
       {{"raycast", teapot, "--size", "16x16", "-o", "a.png"},
        {"read", "convert", "pack", "build", "evaluate", "write"}},
       {{"section", teapot, "--at", "1", "-o", "a.svg"}, {"read", "convert", "pack", "section", "write"}},
+      {{"project", teapot, "--points", "p.csv", "-o", "b.csv"},
+       {"read", "convert", "pack", "build", "evaluate", "write"}},
       {{"check", "a.ply"}, {"read", "check"}},
       {{"measure", teapot}, {"read", "measure"}}};
   for (const auto& [command, phases] : commands) {

@@ -29,10 +29,12 @@ TEST_F(Output, WithoutADensityARelativeToleranceIsUsedAndSaid) {
 }
 
 TEST_F(Output, MissingFoldersAreMade) {
+  folder_.file("p.csv", "x,y,z\n0,0,9\n");
   const std::vector<std::vector<std::string>> commands{{"tessellate", teapot, "--grid", "2x2", "-o", "a/b/mesh.ply"},
                                                        {"eval", teapot, "--grid", "2x2", "-o", "c/points.csv"},
                                                        {"convert", teapot, "-o", "d/e/model.obj"},
                                                        {"section", teapot, "--at", "1", "-o", "g/cut.svg"},
+                                                       {"project", teapot, "--points", "p.csv", "-o", "h/near.csv"},
                                                        {"raycast", teapot, "--size", "8x8", "-o", "f/picture.png"}};
   for (const std::vector<std::string>& command : commands) {
     output_of(command);

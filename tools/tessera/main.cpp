@@ -21,6 +21,7 @@ void add_commands(Command& tool, Session& session) {
   add_tessellate(tool, session);
   add_raycast(tool, session);
   add_convert(tool, session);
+  add_project(tool, session);
   add_section(tool, session);
   add_check(tool, session);
   add_measure(tool, session);

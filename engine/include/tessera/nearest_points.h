@@ -20,9 +20,10 @@ struct Model;
 
 /// Whether a nearest point was found.
 enum class NearestKind : std::uint8_t {
-  none,           ///< the surface is farther away than the largest distance that was asked for
-  found,          ///< all members are meaningful
-  invalid_point,  ///< the point is not finite, or the distance negative or NaN
+  none,   ///< the surface is farther away than the largest distance that was asked for
+  found,  ///< all members are meaningful
+  /// The point is not finite or more than 1e139 sizes of the model away, or the largest distance is negative or NaN.
+  invalid_point,
 };
 
 /// Properties of a nearest point.

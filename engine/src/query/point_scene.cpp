@@ -43,7 +43,8 @@ Status PointScene::Impl::refit(const Execution& execution) {
 
 NearestPoint PointScene::Impl::nearest(const Vec3& point, double max_distance, NearestSearch& search) const {
   NearestPoint out;
-  if (!is_finite(point) || !(max_distance >= 0)) {
+  constexpr double max_coordinate = 1e140;  // in the scene's coordinates: squares are finite
+  if (!is_finite(point) || !(max_abs(pieces_.frame().to_scene(point)) <= max_coordinate) || !(max_distance >= 0)) {
     out.kind = NearestKind::invalid_point;
     return out;
   }
@@ -108,7 +109,8 @@ Status PointScene::nearest(std::span<const Vec3> points, std::span<NearestPoint>
       const auto find = [&](std::size_t k, NearestSearch& search) {
         nearest[k] = impl_->nearest(points[k], max_distance, search);
       };
-      impl_->for_points(begin, end, [&](std::size_t k) { return points[k]; }, find);
+      impl_->for_points(
+          begin, end, [&](std::size_t k) { return points[k]; }, find);
     });
   });
 }

@@ -40,6 +40,7 @@ void add_eval(Command& tool, Session& session);
 void add_tessellate(Command& tool, Session& session);
 void add_raycast(Command& tool, Session& session);
 void add_convert(Command& tool, Session& session);
+void add_project(Command& tool, Session& session);
 void add_section(Command& tool, Session& session);
 void add_check(Command& tool, Session& session);
 void add_measure(Command& tool, Session& session);

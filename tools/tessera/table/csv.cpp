@@ -93,6 +93,27 @@ Status read_csv(const std::filesystem::path& path, const ColumnNames& required, 
   return {};
 }
 
+void write_field(OutputFile& out, std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return out.write(text);
+  out.write('"');
+  for (const char c : text) out.write(c == '"' ? "\"\"" : std::string_view(&c, 1));
+  out.write('"');
+}
+
+Result<std::vector<Vec3>> read_points(const std::filesystem::path& path) {
+  std::vector<Vec3> points;
+  const Status status = read_csv(path, {"x", "y", "z"}, {}, [&](std::span<const double> row, const TextCursor& at) {
+    const Vec3 point{row[0], row[1], row[2]};
+    if (!is_finite(point))
+      return at.failure("expected a finite point, found " + text_of(point.x) + "," + text_of(point.y) + "," +
+                        text_of(point.z));
+    points.push_back(point);
+    return Status();
+  });
+  if (!status.ok()) return status;
+  return points;
+}
+
 Result<std::vector<SurfacePlace>> read_places(const std::filesystem::path& path, const Model& model) {
   std::vector<SurfacePlace> places;
   const Status status =

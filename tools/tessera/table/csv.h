@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file/output_file.h"
 #include "io/file/text_cursor.h"
 #include "tessera/model.h"
 #include "tessera/ray_scene.h"
@@ -24,6 +25,9 @@ using ColumnNames = std::vector<std::string_view>;
 Status read_csv(const std::filesystem::path& path, const ColumnNames& required, const ColumnNames& optional,
                 const std::function<Status(std::span<const double>, const TextCursor&)>& row);
 
+/// Writes a text as a field: in quotes if it needs them, each of its own quotes twice (RFC 4180).
+void write_field(OutputFile& out, std::string_view text);
+
 /// A place where a surface is evaluated.
 struct SurfacePlace {
   std::uint32_t surface = 0;
@@ -31,6 +35,9 @@ struct SurfacePlace {
 };
 /// Reads `surface,u,v`: surfaces of the model counted from 0, u and v in the domain of each.
 Result<std::vector<SurfacePlace>> read_places(const std::filesystem::path& path, const Model& model);
+
+/// Reads `x,y,z`: finite points in the model's coordinates.
+Result<std::vector<Vec3>> read_points(const std::filesystem::path& path);
 
 /// Reads `ox,oy,oz,dx,dy,dz[,tnear,tfar]`, valid as tessera::Ray requires; tfar may be inf.
 Result<std::vector<Ray>> read_rays(const std::filesystem::path& path);

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "table/csv.h"
 #include "tessera/surface.h"
 
 namespace tessera::cli {
@@ -12,14 +13,6 @@ constexpr std::string_view header = "ray,hit,t,surface,patch,u,v,x,y,z,nx,ny,nz,
 void write_miss(OutputFile& out, std::size_t ray) {
   out.write_number(ray);
   out.write(",0,,,,,,,,,,,,,\n");
-}
-
-/// Writes a text as a field: in quotes if it needs them, each of its own quotes twice (RFC 4180).
-void write_field(OutputFile& out, std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return out.write(text);
-  out.write('"');
-  for (const char c : text) out.write(c == '"' ? "\"\"" : std::string_view(&c, 1));
-  out.write('"');
 }
 
 void write_hit(OutputFile& out, std::size_t ray, const Hit& hit, const std::string& name) {
