@@ -6,8 +6,6 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr int max_steps = 24;
-
 /// Half the squared distance at a point of the patch: value, gradient, Hessian.
 struct HalfSquare {
   double value, gu, gv, uu, uv, vv;
@@ -50,10 +48,24 @@ struct Step {
   }
 };
 
+/// Evaluates at the end of a step, which is halved until half the squared distance falls below `value`.
+SecondOrder descend(const BezierPatch& patch, const Vec3& origin, const Vec3& point, double value,
+                    const ParameterPoint& from, double& to_u, double& to_v) {
+  constexpr int max_halvings = 8;
+  SecondOrder next = second_order(patch, to_u, to_v, origin);
+  for (int halving = 0; halving < max_halvings; ++halving) {
+    const Vec3 to = next.position - point;
+    if (0.5 * dot(to, to) <= value) break;
+    to_u = 0.5 * (to_u + from.u), to_v = 0.5 * (to_v + from.v);
+    next = second_order(patch, to_u, to_v, origin);
+  }
+  return next;
+}
+
 }  // namespace
 
 Foot nearest_foot(const BezierPatch& patch, const Vec3& origin, const Vec3& point, const PatchPart& part, double u,
-                  double v, double limit) {
+                  double v, double limit, double rounding, int max_steps) {
   constexpr double last_step = 1e-7;  // of the distance's scale: the next one would be its square
   u = std::clamp(u, part.u0, part.u1), v = std::clamp(v, part.v0, part.v1);
   Foot foot{};
@@ -71,9 +83,8 @@ Foot nearest_foot(const BezierPatch& patch, const Vec3& origin, const Vec3& poin
     }
     const bool holds_u = is_held(u, part.u0, part.u1, f.gu), holds_v = is_held(v, part.v0, part.v1, f.gv);
     const double scale_u = length(at.du), scale_v = length(at.dv), size = std::sqrt(2 * f.value);
-    constexpr double held = 1e-9;
-    foot.on_border =
-        (holds_u && std::abs(f.gu) > held * size * scale_u) || (holds_v && std::abs(f.gv) > held * size * scale_v);
+    const double aside = 1e-13 * size + rounding;  // up to this, the line to the foot counts as perpendicular
+    foot.on_border = (holds_u && std::abs(f.gu) > aside * scale_u) || (holds_v && std::abs(f.gv) > aside * scale_v);
     Step step(f, at, holds_u, holds_v);
     double to_u = std::clamp(u + step.u, part.u0, part.u1), to_v = std::clamp(v + step.v, part.v0, part.v1);
     const double step_u = std::abs(to_u - u), step_v = std::abs(to_v - v);
@@ -82,22 +93,15 @@ Foot nearest_foot(const BezierPatch& patch, const Vec3& origin, const Vec3& poin
     const double reach = std::max(scale_u * (part.u1 - part.u0), scale_v * (part.v1 - part.v0));
     const bool is_last = moved <= last_step * reach && bend <= last_step * reach;
     if (is_last || k == max_steps) {
-      const double su = to_u - u, sv = to_v - v;
+      const double su = is_last ? to_u - u : 0, sv = is_last ? to_v - v : 0;  // a longer step needs a point of its own
       foot.position = at.position + su * at.du + sv * at.dv + (0.5 * su * su) * at.duu + (su * sv) * at.duv +
                       (0.5 * sv * sv) * at.dvv;
-      foot.u = to_u, foot.v = to_v, foot.converged = is_last;
+      foot.u = is_last ? to_u : u, foot.v = is_last ? to_v : v, foot.converged = is_last;
       foot.distance = length(foot.position - point);
       return foot;
     }
-    // A step may overshoot: it is halved until the distance falls.
-    SecondOrder next = second_order(patch, to_u, to_v, origin);
-    for (int halving = 0; halving < 8; ++halving) {
-      const Vec3 to = next.position - point;
-      if (0.5 * dot(to, to) <= f.value) break;
-      to_u = 0.5 * (to_u + u), to_v = 0.5 * (to_v + v);
-      next = second_order(patch, to_u, to_v, origin);
-    }
-    u = to_u, v = to_v, at = next;
+    at = descend(patch, origin, point, f.value, {u, v}, to_u, to_v);
+    u = to_u, v = to_v;
   }
 }
 

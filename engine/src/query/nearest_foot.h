@@ -24,8 +24,9 @@ struct Foot {
 };
 
 /// Finds the nearest point of a part from a start. `point`: relative to the origin. `limit`: feet that are proven to be
-/// farther are of no use; the proof takes the squared distance for convex over the part.
+/// farther are of no use; the proof takes the squared distance for convex over the part. `rounding`: of points.
+/// `max_steps`: of Newton's method.
 Foot nearest_foot(const BezierPatch& patch, const Vec3& origin, const Vec3& point, const PatchPart& part, double u,
-                  double v, double limit);
+                  double v, double limit, double rounding, int max_steps = 24);
 
 }}  // namespace tessera::abi_0_1

@@ -33,11 +33,26 @@ NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance
   pieces_.tree().visit_near(scene_point_, *this);
   for (const Deferred& one : deferred_)
     if (one.lower <= reach_) branch(*one.piece);
+  polish();
   const double limit = outcome_.best.distance + outcome_.slack;
   for (std::size_t k = 0; k < tie_count_; ++k)
     outcome_.ambiguous |=
         ties_[k].distance <= limit && length(ties_[k].position - outcome_.best.position) * frame.scale > min_apart;
   return outcome_;
+}
+
+/// Moves the nearest point to the foot of a perpendicular near it. It may be one of a part's border or of few steps,
+/// which is as near up to rounding, but off to the side by the root of that.
+void NearestSearch::polish() {
+  NearCandidate& best = outcome_.best;
+  if (best.patch == no_id || best.is_on_curve || (best.is_exact && !best.on_border)) return;
+  const Foot foot = nearest_foot(set_.patch(best.patch), pieces_.frame().centre, point_, {0, 1, 0, 1}, best.u, best.v,
+                                 infinity, outcome_.slack);
+  const bool is_cut = pieces_.regions().any() && pieces_.regions().is_cut(best.patch);
+  if (!foot.converged || foot.distance > best.distance + outcome_.slack) return;
+  if (is_cut && !is_kept(best.patch, foot.u, foot.v)) return;
+  best.u = foot.u, best.v = foot.v, best.position = foot.position, best.distance = foot.distance;
+  best.on_border = foot.on_border;
 }
 
 bool NearestSearch::visit(std::uint32_t item, double distance) {
@@ -62,7 +77,7 @@ bool NearestSearch::visit(std::uint32_t item, double distance) {
   const Foot foot =
       nearest_foot(ground, curve, point_, outcome_.best.distance + outcome_.slack, max_parts, outcome_.parts);
   if (!foot.converged) outcome_.complete = false;
-  if (!foot.is_farther) offer({curve.patch, foot.u, foot.v, foot.position, foot.distance, true});
+  if (!foot.is_farther) offer({curve.patch, foot.u, foot.v, foot.position, foot.distance, true, true, true});
   return true;
 }
 
@@ -89,7 +104,7 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   const double u = 0.5 + x / double(facts.length_u), v = 0.5 + y / double(facts.length_v);
   const Foot foot =
       nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, part, area.u0 + u * (area.u1 - area.u0),
-                   area.v0 + v * (area.v1 - area.v0), outcome_.best.distance + outcome_.slack);
+                   area.v0 + v * (area.v1 - area.v0), outcome_.best.distance + outcome_.slack, outcome_.slack);
   if (foot.is_farther) return true;
   offer(piece, foot);
   return foot.converged;
@@ -106,8 +121,9 @@ void NearestSearch::branch(const QueryPiece& piece) {
     if (part.lower > reach_ || is_decided(piece, part.area, part.bounds.facts)) continue;
     const PatchPart& area = part.area;
     const double middle_u = 0.5 * (area.u0 + area.u1), middle_v = 0.5 * (area.v0 + area.v1);
-    offer(piece,
-          nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, area, middle_u, middle_v, infinity));
+    constexpr int few_steps = 3;  // towards a good limit: where the part's nearest point lies is not clear
+    offer(piece, nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, area, middle_u, middle_v,
+                              infinity, outcome_.slack, few_steps));
     // All points of the part are as near, up to rounding, as the nearest one, or as each other.
     const double rounding = outcome_.slack * scale;
     if (part.lower >= outcome_.best.distance * scale - rounding || part.bounds.box.diagonal() <= 4 * rounding) continue;
@@ -158,16 +174,20 @@ bool NearestSearch::is_kept(std::uint32_t patch, double u, double v) const {
 void NearestSearch::offer(const QueryPiece& piece, const Foot& foot) {
   if (!(foot.distance <= outcome_.best.distance + outcome_.slack)) return;
   if (piece.is_cut && !is_kept(piece.patch, foot.u, foot.v)) return;
-  offer({piece.patch, foot.u, foot.v, foot.position, foot.distance, foot.on_border});
+  offer({piece.patch, foot.u, foot.v, foot.position, foot.distance, foot.on_border, foot.converged});
 }
 
-/// Takes a candidate if it is the nearest so far; of equally near ones the first by patch and parameters, whichever was
-/// found first. Others that are as near up to rounding are kept as ties.
+/// Takes a candidate if it is the nearest so far. Up to the last digits, those where the line is perpendicular come
+/// first: a foot just across a border of pieces is the nearest point of both. Of equally near ones the first by patch
+/// and parameters counts, whichever was found first. Others that are as near up to rounding are kept as ties.
 void NearestSearch::offer(const NearCandidate& candidate) {
   NearCandidate& best = outcome_.best;
   if (!(candidate.distance <= best.distance + outcome_.slack)) return;
   const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
-  const bool wins = order(candidate) < order(best);
+  const double digits = 0.125 * outcome_.slack;
+  const bool is_as_near = best.patch != no_id && std::abs(candidate.distance - best.distance) <= digits;
+  const bool wins =
+      is_as_near && candidate.on_border != best.on_border ? best.on_border : order(candidate) < order(best);
   const NearCandidate other = wins ? best : candidate;
   if (wins) best = candidate;
   reach_ = std::min(reach_, (best.distance + outcome_.slack) * pieces_.frame().scale);

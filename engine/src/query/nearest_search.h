@@ -18,7 +18,9 @@ struct NearCandidate {
   double u = 0, v = 0;
   Vec3 position;
   double distance = infinity;
-  bool on_border = false;
+  bool on_border = false;    ///< as Foot::on_border
+  bool is_exact = true;      ///< no step of Newton's method is left
+  bool is_on_curve = false;  ///< of what bounds the kept part
 };
 
 /// The search of one point after the other, on one thread.
@@ -53,6 +55,7 @@ class NearestSearch {
   double reach() const { return reach_; }
   bool visit(std::uint32_t item, double distance);
   void branch(const QueryPiece& piece);
+  void polish();
   void push(const QueryPiece& piece, const PatchPart& area);
   template <class T>
   bool is_decided(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts);

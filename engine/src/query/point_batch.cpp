@@ -5,7 +5,6 @@
 #include "base/infinity.h"
 #include "base/text.h"
 #include "eval/grid_checks.h"
-#include "parallel/parallel_for.h"
 #include "query/point_scene_impl.h"
 #include "tessera/guard.h"
 
@@ -83,15 +82,12 @@ Status nearest_of(const PointScene& scene, const PointViews<T>& points, const Ne
     if (Status status = check(points, nearest); !status.ok()) return status;
     const PointScene::Impl& impl = impl_of(scene);
     if (Status status = impl.check_fresh(); !status.ok()) return status;
-    const auto find = [&](std::size_t begin, std::size_t end) {
-      const View3<const T>& p = points.position;
-      const auto at = [&](std::size_t k) { return Vec3{p.at(k, 0), p.at(k, 1), p.at(k, 2)}; };
-      impl.for_points(begin, end, at, [&](std::size_t k, NearestSearch& search) {
-        const double reach = points.max_distance.empty() ? infinity : double(points.max_distance.at(k, 0));
-        write(impl.nearest(at(k), reach, search), nearest, k);
-      });
-    };
-    return parallel_for(points.position.size, PointScene::Impl::points_per_task, execution, find);
+    const View3<const T>& p = points.position;
+    const auto at = [&](std::size_t k) { return Vec3{p.at(k, 0), p.at(k, 1), p.at(k, 2)}; };
+    return impl.for_points(p.size, execution, at, [&](std::size_t k, NearestSearch& search) {
+      const double reach = points.max_distance.empty() ? infinity : double(points.max_distance.at(k, 0));
+      write(impl.nearest(at(k), reach, search), nearest, k);
+    });
   });
 }
 

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "base/text.h"
-#include "parallel/parallel_for.h"
 #include "query/point_scene_impl.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/surface_hit.h"
@@ -105,12 +104,9 @@ Status PointScene::nearest(std::span<const Vec3> points, std::span<NearestPoint>
     if (!(max_distance >= 0))
       return {StatusCode::invalid_argument, "the largest distance must be at least 0, found " + text(max_distance)};
     if (Status status = impl_->check_fresh(); !status.ok()) return status;
-    return parallel_for(points.size(), Impl::points_per_task, execution, [&](std::size_t begin, std::size_t end) {
-      const auto find = [&](std::size_t k, NearestSearch& search) {
-        nearest[k] = impl_->nearest(points[k], max_distance, search);
-      };
-      impl_->for_points(
-          begin, end, [&](std::size_t k) { return points[k]; }, find);
+    const auto at = [&](std::size_t k) { return points[k]; };
+    return impl_->for_points(points.size(), execution, at, [&](std::size_t k, NearestSearch& search) {
+      nearest[k] = impl_->nearest(points[k], max_distance, search);
     });
   });
 }

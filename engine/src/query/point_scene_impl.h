@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "parallel/parallel_for.h"
 #include "query/nearest_search.h"
 #include "query/query_pieces.h"
 #include "tessera/nearest_points.h"
@@ -24,10 +25,10 @@ class PointScene::Impl {
   /// Errors: stale.
   Status check_fresh() const;
 
-  static constexpr std::size_t points_per_task = 1024;
-  /// Calls find(k, search) for the points of a task, those that lie together one after the other.
+  /// Calls find(k, search) for the points position(k), in tasks; in each, those that lie together one after the other.
+  /// Errors: cancelled, which is seen between points, because some take long.
   template <class Position, class Find>
-  void for_points(std::size_t begin, std::size_t end, const Position& position, const Find& find) const;
+  Status for_points(std::size_t count, const Execution& execution, const Position& position, const Find& find) const;
   /// Finds a nearest point; `search` is of this scene.
   NearestPoint nearest(const Vec3& point, double max_distance, NearestSearch& search) const;
 
@@ -59,19 +60,26 @@ inline std::uint32_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t 
 }
 
 template <class Position, class Find>
-void PointScene::Impl::for_points(std::size_t begin, std::size_t end, const Position& position, const Find& find) const {
+Status PointScene::Impl::for_points(std::size_t count, const Execution& execution, const Position& position,
+                                    const Find& find) const {
+  constexpr std::size_t points_per_task = 1024;
   constexpr double cells = 1023;
-  NearestSearch search(set_, pieces_);
   const SceneFrame& frame = pieces_.frame();
   const auto cell = [](double x) { return static_cast<std::uint32_t>(cells * std::clamp(0.5 + 0.5 * x, 0.0, 1.0)); };
-  std::array<std::uint64_t, points_per_task> order;  // the key, and the place
-  for (std::size_t k = begin; k < end; ++k) {
-    const Vec3 at = frame.to_scene(position(k));
-    const std::uint64_t key = is_finite(at) ? morton_key(cell(at.x), cell(at.y), cell(at.z)) : 0;
-    order[k - begin] = key << 32 | (k - begin);
-  }
-  std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(end - begin));
-  for (std::size_t k = 0; k < end - begin; ++k) find(begin + (order[k] & 0xffffffff), search);
+  const auto is_cancelled = [&] { return execution.cancel && execution.cancel->load(std::memory_order_relaxed); };
+  const auto find_task = [&](std::size_t begin, std::size_t end) {
+    NearestSearch search(set_, pieces_);
+    std::array<std::uint64_t, points_per_task> order;  // the key, and the place
+    for (std::size_t k = begin; k < end; ++k) {
+      const Vec3 at = frame.to_scene(position(k));
+      const std::uint64_t key = is_finite(at) ? morton_key(cell(at.x), cell(at.y), cell(at.z)) : 0;
+      order[k - begin] = key << 32 | (k - begin);
+    }
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(end - begin));
+    for (std::size_t k = 0; k < end - begin && !is_cancelled(); ++k) find(begin + (order[k] & 0xffffffff), search);
+  };
+  Status status = parallel_for(count, points_per_task, execution, find_task);
+  return status.ok() && is_cancelled() ? Status(StatusCode::cancelled, "cancelled by the caller") : status;
 }
 
 }}  // namespace tessera::abi_0_1
