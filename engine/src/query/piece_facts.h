@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "query/range.h"
 #include "tessera/geometry.h"
@@ -99,10 +100,12 @@ struct DistanceShape {
 template <class T>
 DistanceShape distance_shape(const PieceFacts<T>& f, const Vec3& point) {
   const Vec3 from = Vec3(f.centre) - point;
+  // The rounding of axes turns the vector a little.
+  const double turned = 4 * double(std::numeric_limits<T>::epsilon()) * max_abs(from);
   double middle[3], most[3], xx = 0, yy = 0, xy = 0, turn_x = 0, turn_y = 0;  // of r, and of r . (s_x - middle) ..
   for (int c = 0; c < 3; ++c) {
     middle[c] = dot(from, Vec3(f.axes[c]));
-    const double reach = f.reach[c], low = middle[c] - reach, high = middle[c] + reach;
+    const double reach = double(f.reach[c]) + turned, low = middle[c] - reach, high = middle[c] + reach;
     most[c] = std::max(-low, high);
     const auto least = [&](double from_bend, double to_bend) {
       return std::min(std::min(low * from_bend, low * to_bend), std::min(high * from_bend, high * to_bend));
