@@ -217,6 +217,65 @@ TEST(Nearest, ArraysHaveTheNumbersOfSinglePoints) {
   EXPECT_EQ(nearest(scene, few, out).code(), StatusCode::count_mismatch);
 }
 
+/// Whether some place of a point is at these parameters.
+bool has_place(std::span<const NearestPoint> places, std::uint32_t patch, double u, double v) {
+  return std::ranges::any_of(places, [&](const NearestPoint& one) {
+    return one.patch == patch && std::abs(one.patch_u - u) < 1e-7 && std::abs(one.patch_v - v) < 1e-7;
+  });
+}
+
+// Points of a surface go back to their parameters; those of a border to the parameters of both patches.
+TEST(Nearest, PlacesOfPointsOnTheSurface) {
+  for (const std::vector<BezierPatch>& patches : {Torus(6).patches(false), Torus(5).patches(true), closed_body()}) {
+    const PatchSet set = set_of(patches);
+    const PointScene scene = value_of(PointScene::make(set));
+    Random random(6);
+    std::vector<Vec3> points;
+    std::vector<SeamPlace> from;
+    for (int k = 0; k < 600; ++k) {
+      SeamPlace place;
+      place.patch = random() % patches.size();
+      place.u = uniform(random, 0, 1), place.v = uniform(random, 0, 1);
+      if (k % 3 == 0) place.u = static_cast<double>(random() % 2);
+      if (k % 9 == 0) place.v = static_cast<double>(random() % 2);
+      from.push_back(place);
+      points.push_back(de_casteljau(patches[place.patch], place.u, place.v));
+    }
+    SurfacePlaces found;
+    ASSERT_TRUE(scene.places(points, 1e-9, found).ok());
+    ASSERT_EQ(found.first.size(), points.size() + 1);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto places = std::span(found.places).subspan(found.first[k], found.first[k + 1] - found.first[k]);
+      EXPECT_TRUE(has_place(places, static_cast<std::uint32_t>(from[k].patch), from[k].u, from[k].v)) << k;
+      EXPECT_EQ(places.size(), k % 9 == 0 ? places.size() : k % 3 == 0 ? 2u : 1u) << k;
+      if (k % 9 == 0) {
+        EXPECT_GE(places.size(), 3u) << k;
+      }
+      for (const NearestPoint& one : places) {
+        EXPECT_TRUE(one.flags.certified);
+        EXPECT_LE(one.distance, 1e-14);
+      }
+    }
+  }
+}
+
+TEST(Nearest, PlacesAtAPoleAndOfTwoSheets) {
+  const PatchSet ball = set_of(sphere());
+  const PointScene scene = value_of(PointScene::make(ball));
+  SurfacePlaces found;
+  const std::vector<Vec3> points{{0, 0, 1}, {0, 0, 1.1}, {nan, 0, 0}};
+  ASSERT_TRUE(scene.places(points, 1e-6, found).ok());
+  EXPECT_EQ(found.first, (std::vector<std::size_t>{0, 4, 4, 4}));
+  // A patch that folds onto itself has two places.
+  const PatchSet folded =
+      set_of({polynomial(2, 1, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {0, 1, 0}})});
+  ASSERT_TRUE(value_of(PointScene::make(folded)).places(std::vector<Vec3>{{0.3, 0.5, 0}}, 1e-9, found).ok());
+  EXPECT_EQ(found.places.size(), 2u);
+  for (const double wrong : {0.0, -1.0, nan, 1.0})
+    EXPECT_EQ(scene.places(points, wrong, found).code(), StatusCode::invalid_argument);
+  EXPECT_TRUE(found.first.empty());
+}
+
 // The order of work changes nothing.
 TEST(Nearest, EqualBytesInAnyBatch) {
   const PatchSet set = set_of(closed_body());

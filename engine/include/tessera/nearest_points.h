@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "tessera/execution.h"
 #include "tessera/geometry.h"
@@ -52,6 +53,13 @@ struct NearestPoint {
   double rounding = 0;                                        ///< bounds the rounding of the distance
 };
 
+/// Places of surfaces for several points: places[first[k]] to places[first[k + 1] - 1] are those of point k, by patches
+/// and parameters.
+struct SurfacePlaces {
+  std::vector<NearestPoint> places;  ///< point after point
+  std::vector<std::size_t> first;    ///< one more than there are points
+};
+
 /// A patch set prepared for queries by points.
 ///
 /// Method: patches are cut into pieces that are nearly flat, which lie in a tree of boxes. Within a piece, bounds of
@@ -92,6 +100,19 @@ class PointScene {
                  double max_distance = std::numeric_limits<double>::infinity(), const Execution& execution = {}) const;
   /// Finds the nearest point to one point. A stale scene, as any error, returns NearestKind::invalid_point.
   NearestPoint nearest(const Vec3& point, double max_distance = std::numeric_limits<double>::infinity()) const;
+
+  /// Finds all places of the surface within a distance of each point, such as the parameters of points that lie on it.
+  /// A point at a border that patches share has a place in each of them; one at a pole has one in each patch.
+  ///
+  /// - `distance`: how far a place may be away, above 0, at most 1e-3 of the size. Places of one patch that are nearer
+  ///   to each other than four times that count as one, the nearest.
+  ///
+  /// A point that is not finite has no places. NearestFlags::certified: there are no others.
+  ///
+  /// Errors, with empty lists: invalid_argument (distance), stale, cancelled, out_of_memory. Memory: that of `places`
+  /// is reused.
+  Status places(std::span<const Vec3> points, double distance, SurfacePlaces& places,
+                const Execution& execution = {}) const;
 
   /// Updates the scene after edits of the set, and does nothing if nothing was edited. Pieces are cut as they were, and
   /// the tree keeps its shape, unless the set's box has left the range that coordinates are scaled to. Errors: as

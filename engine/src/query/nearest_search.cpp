@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ray/leaf/kept_part.h"
+#include "ray/line/first_order.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -20,7 +21,7 @@ NearestSearch::NearestSearch(const SetView& set, const QueryPieces& pieces) : se
   stack_.reserve(max_stack);
 }
 
-NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance) {
+void NearestSearch::start(const Vec3& point, double max_distance) {
   const SceneFrame& frame = pieces_.frame();
   point_ = point - frame.centre;
   scene_point_ = frame.scale * point_;
@@ -29,30 +30,79 @@ NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance
   outcome_.best.distance = max_distance;
   tie_count_ = 0;
   reach_ = (max_distance + outcome_.slack) * frame.scale;
+}
+
+void NearestSearch::search() {
   deferred_.clear();
   pieces_.tree().visit_near(scene_point_, *this);
   for (const Deferred& one : deferred_)
     if (one.lower <= reach_) branch(*one.piece);
-  polish();
-  const double limit = outcome_.best.distance + outcome_.slack;
+}
+
+NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance) {
+  places_ = nullptr;
+  start(point, max_distance);
+  search();
+  polish(outcome_.best);
+  const double limit = outcome_.best.distance + outcome_.slack, scale = pieces_.frame().scale;
   for (std::size_t k = 0; k < tie_count_; ++k)
     outcome_.ambiguous |=
-        ties_[k].distance <= limit && length(ties_[k].position - outcome_.best.position) * frame.scale > min_apart;
+        ties_[k].distance <= limit && length(ties_[k].position - outcome_.best.position) * scale > min_apart;
   return outcome_;
 }
 
-/// Moves the nearest point to the foot of a perpendicular near it. It may be one of a part's border or of few steps,
-/// which is as near up to rounding, but off to the side by the root of that.
-void NearestSearch::polish() {
-  NearCandidate& best = outcome_.best;
-  if (best.patch == no_id || best.is_on_curve || (best.is_exact && !best.on_border)) return;
-  const Foot foot = nearest_foot(set_.patch(best.patch), pieces_.frame().centre, point_, {0, 1, 0, 1}, best.u, best.v,
-                                 infinity, outcome_.slack);
-  const bool is_cut = pieces_.regions().any() && pieces_.regions().is_cut(best.patch);
-  if (!foot.converged || foot.distance > best.distance + outcome_.slack) return;
-  if (is_cut && !is_kept(best.patch, foot.u, foot.v)) return;
-  best.u = foot.u, best.v = foot.v, best.position = foot.position, best.distance = foot.distance;
-  best.on_border = foot.on_border;
+NearestSearch::Outcome NearestSearch::run_all(const Vec3& point, double distance, std::vector<NearCandidate>& places) {
+  places_ = &places;
+  first_place_ = places.size();
+  start(point, distance);
+  search();
+  std::vector<NearCandidate> found(places.begin() + static_cast<std::ptrdiff_t>(first_place_), places.end());
+  places.resize(first_place_);
+  for (NearCandidate& one : found) {
+    polish(one);
+    add_place(one);
+  }
+  std::ranges::sort(places.begin() + static_cast<std::ptrdiff_t>(first_place_), places.end(), {},
+                    [](const NearCandidate& a) { return std::tuple(a.patch, a.u, a.v); });
+  places_ = nullptr;
+  return outcome_;
+}
+
+/// Moves a candidate to the foot of a perpendicular near it. It may be one of a part's border or of few steps, which is
+/// as near up to rounding, but off to the side by the root of that.
+void NearestSearch::polish(NearCandidate& candidate) const {
+  if (candidate.patch == no_id || candidate.is_on_curve || (candidate.is_exact && !candidate.on_border)) return;
+  const Foot foot = nearest_foot(set_.patch(candidate.patch), pieces_.frame().centre, point_, {0, 1, 0, 1}, candidate.u,
+                                 candidate.v, infinity, outcome_.slack);
+  const bool is_cut = pieces_.regions().any() && pieces_.regions().is_cut(candidate.patch);
+  if (!foot.converged || foot.distance > candidate.distance + outcome_.slack) return;
+  if (is_cut && !is_kept(candidate.patch, foot.u, foot.v)) return;
+  candidate.u = foot.u, candidate.v = foot.v, candidate.position = foot.position, candidate.distance = foot.distance;
+  candidate.on_border = foot.on_border;
+}
+
+/// Whether places of a patch are one: a straight way between them in the parameters stays near.
+bool NearestSearch::is_same_place(const NearCandidate& a, const NearCandidate& b) const {
+  if (a.patch != b.patch) return false;
+  const double near = 4 * (outcome_.best.distance + outcome_.slack);
+  const auto is_near = [&](double share) {
+    const FirstOrder at =
+        first_order(set_.patch(a.patch), a.u + share * (b.u - a.u), a.v + share * (b.v - a.v), pieces_.frame().centre);
+    return length(at.position - a.position) <= near;
+  };
+  return is_near(0.25) && is_near(0.5) && is_near(0.75);
+}
+
+/// Keeps a place, or the nearer one of two that are the same.
+void NearestSearch::add_place(const NearCandidate& candidate) {
+  for (std::size_t k = first_place_; k < places_->size(); ++k) {
+    NearCandidate& known = (*places_)[k];
+    if (!is_same_place(known, candidate)) continue;
+    const auto order = [](const NearCandidate& a) { return std::tuple(a.on_border, a.distance, a.u, a.v); };
+    if (order(candidate) < order(known)) known = candidate;
+    return;
+  }
+  places_->push_back(candidate);
 }
 
 bool NearestSearch::visit(std::uint32_t item, double distance) {
@@ -125,8 +175,9 @@ void NearestSearch::branch(const QueryPiece& piece) {
     offer(piece, nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, area, middle_u, middle_v,
                               infinity, outcome_.slack, few_steps));
     // All points of the part are as near, up to rounding, as the nearest one, or as each other.
-    const double rounding = outcome_.slack * scale;
-    if (part.lower >= outcome_.best.distance * scale - rounding || part.bounds.box.diagonal() <= 4 * rounding) continue;
+    const double rounding = outcome_.slack * scale, near = outcome_.best.distance * scale;
+    const double point_size = places_ ? std::max(4 * rounding, near) : 4 * rounding;
+    if (part.lower >= near - (places_ ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
     if (++outcome_.parts >= max_parts || stack_.size() + 2 > max_stack) {
       outcome_.complete = false;
       return;
@@ -183,6 +234,7 @@ void NearestSearch::offer(const QueryPiece& piece, const Foot& foot) {
 void NearestSearch::offer(const NearCandidate& candidate) {
   NearCandidate& best = outcome_.best;
   if (!(candidate.distance <= best.distance + outcome_.slack)) return;
+  if (places_) return add_place(candidate);
   const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
   const double digits = 0.125 * outcome_.slack;
   const bool is_as_near = best.patch != no_id && std::abs(candidate.distance - best.distance) <= digits;

@@ -39,6 +39,9 @@ class NearestSearch {
   };
   /// `point`: finite. `max_distance`: at least 0, perhaps infinite.
   Outcome run(const Vec3& point, double max_distance);
+  /// Finds all places of patches within a distance, each once: places of one patch count as one if they are nearer to
+  /// each other than four times that. Appends them by patches and parameters; `best` stays empty.
+  Outcome run_all(const Vec3& point, double distance, std::vector<NearCandidate>& places);
 
   /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
   /// search ends before.
@@ -55,7 +58,11 @@ class NearestSearch {
   double reach() const { return reach_; }
   bool visit(std::uint32_t item, double distance);
   void branch(const QueryPiece& piece);
-  void polish();
+  void start(const Vec3& point, double max_distance);
+  void search();
+  void polish(NearCandidate& candidate) const;
+  void add_place(const NearCandidate& candidate);
+  bool is_same_place(const NearCandidate& a, const NearCandidate& b) const;
   void push(const QueryPiece& piece, const PatchPart& area);
   template <class T>
   bool is_decided(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts);
@@ -80,6 +87,8 @@ class NearestSearch {
   Vec3 scene_point_;  ///< in the scene's coordinates
   double reach_ = 0;  ///< in the scene's coordinates: pieces beyond are of no use
   Outcome outcome_;
+  std::vector<NearCandidate>* places_ = nullptr;  ///< if all are wanted
+  std::size_t first_place_ = 0;                   ///< of this point, in `places_`
   static constexpr std::size_t max_ties = 4;
   std::array<NearCandidate, max_ties> ties_;
   std::size_t tie_count_ = 0;

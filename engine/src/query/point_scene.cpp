@@ -40,31 +40,48 @@ Status PointScene::Impl::refit(const Execution& execution) {
   return done(pieces_.update(set_, edited, execution));
 }
 
+bool PointScene::Impl::is_valid(const Vec3& point) const {
+  constexpr double max_coordinate = 1e140;  // in the scene's coordinates: squares are finite
+  return is_finite(point) && max_abs(pieces_.frame().to_scene(point)) <= max_coordinate;
+}
+
+/// Completes a candidate.
+NearestPoint PointScene::Impl::point_of(const NearCandidate& candidate, const NearestSearch::Outcome& found) const {
+  const SceneFrame& frame = pieces_.frame();
+  FirstOrder at = first_order(set_.patch(candidate.patch), candidate.u, candidate.v, frame.centre);
+  at.position = frame.centre + at.position;
+  Hit hit;
+  set_surface_point(set_, size_, 1, candidate.patch, candidate.u, candidate.v, at, hit, {.derivatives = false});
+  NearestPoint out;
+  out.kind = NearestKind::found;
+  out.surface = hit.surface, out.patch = hit.patch;
+  out.u = hit.u, out.v = hit.v, out.patch_u = candidate.u, out.patch_v = candidate.v;
+  out.position = hit.position, out.normal = hit.normal;
+  out.distance = candidate.distance, out.rounding = found.slack;
+  out.flags = {.certified = found.complete, .ambiguous = found.ambiguous, .border = candidate.on_border};
+  out.flags.degenerate_normal = hit.flags.degenerate_normal;
+  return out;
+}
+
 NearestPoint PointScene::Impl::nearest(const Vec3& point, double max_distance, NearestSearch& search) const {
   NearestPoint out;
-  constexpr double max_coordinate = 1e140;  // in the scene's coordinates: squares are finite
-  if (!is_finite(point) || !(max_abs(pieces_.frame().to_scene(point)) <= max_coordinate) || !(max_distance >= 0)) {
+  if (!is_valid(point) || !(max_distance >= 0)) {
     out.kind = NearestKind::invalid_point;
     return out;
   }
   const NearestSearch::Outcome found = search.run(point, max_distance);
+  if (found.best.patch != no_id) return point_of(found.best, found);
   out.flags.certified = found.complete;
   out.rounding = found.slack;
-  if (found.best.patch == no_id) return out;
-  const NearCandidate& best = found.best;
-  const SceneFrame& frame = pieces_.frame();
-  FirstOrder at = first_order(set_.patch(best.patch), best.u, best.v, frame.centre);
-  at.position = frame.centre + at.position;
-  Hit hit;
-  set_surface_point(set_, size_, 1, best.patch, best.u, best.v, at, hit, {.derivatives = false});
-  out.kind = NearestKind::found;
-  out.surface = hit.surface, out.patch = hit.patch;
-  out.u = hit.u, out.v = hit.v, out.patch_u = best.u, out.patch_v = best.v;
-  out.position = hit.position, out.normal = hit.normal;
-  out.distance = best.distance;
-  out.flags.ambiguous = found.ambiguous, out.flags.border = best.on_border;
-  out.flags.degenerate_normal = hit.flags.degenerate_normal;
   return out;
+}
+
+void PointScene::Impl::append_places(const Vec3& point, double distance, NearestSearch& search,
+                                     std::vector<NearestPoint>& places) const {
+  if (!is_valid(point)) return;
+  std::vector<NearCandidate> found;
+  const NearestSearch::Outcome outcome = search.run_all(point, distance, found);
+  for (const NearCandidate& one : found) places.push_back(point_of(one, outcome));
 }
 
 PointScene::PointScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -115,6 +132,30 @@ NearestPoint PointScene::nearest(const Vec3& point, double max_distance) const {
   NearestPoint out;
   if (!nearest({&point, 1}, {&out, 1}, max_distance).ok()) out.kind = NearestKind::invalid_point;
   return out;
+}
+
+Status PointScene::places(std::span<const Vec3> points, double distance, SurfacePlaces& places,
+                          const Execution& execution) const {
+  constexpr double max_share = 1e-3;
+  places.places.clear(), places.first.clear();
+  return guarded([&]() -> Status {
+    if (Status status = impl_->check_fresh(); !status.ok()) return status;
+    if (!(distance > 0 && distance <= max_share * impl_->size()))
+      return {StatusCode::invalid_argument, "the distance of places must be above 0 and at most 1e-3 of the size, " +
+                                                text(max_share * impl_->size()) + ", found " + text(distance)};
+    std::vector<std::vector<NearestPoint>> found(points.size());
+    const auto at = [&](std::size_t k) { return points[k]; };
+    const Status status = impl_->for_points(points.size(), execution, at, [&](std::size_t k, NearestSearch& search) {
+      impl_->append_places(points[k], distance, search, found[k]);
+    });
+    if (!status.ok()) return status;
+    places.first.push_back(0);
+    for (const std::vector<NearestPoint>& one : found) {
+      places.places.insert(places.places.end(), one.begin(), one.end());
+      places.first.push_back(places.places.size());
+    }
+    return {};
+  });
 }
 
 Status PointScene::refit(const Execution& execution) {

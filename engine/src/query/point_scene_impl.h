@@ -31,6 +31,10 @@ class PointScene::Impl {
   Status for_points(std::size_t count, const Execution& execution, const Position& position, const Find& find) const;
   /// Finds a nearest point; `search` is of this scene.
   NearestPoint nearest(const Vec3& point, double max_distance, NearestSearch& search) const;
+  /// Appends all places within a distance.
+  void append_places(const Vec3& point, double distance, NearestSearch& search,
+                     std::vector<NearestPoint>& places) const;
+  double size() const { return size_; }
 
   void keep(PatchSet&& set) { kept_.emplace(std::move(set)); }
   const SetView& set() const { return set_; }
@@ -39,6 +43,8 @@ class PointScene::Impl {
   std::size_t memory_bytes() const { return pieces_.memory_bytes(); }
 
  private:
+  bool is_valid(const Vec3& point) const;
+  NearestPoint point_of(const NearCandidate& candidate, const NearestSearch::Outcome& found) const;
   Status done(Status status);
 
   SetView set_;
