@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The binary interface of libtessera_c: compares it with tests/c/reference.abi, or makes that file anew.
 #
-# The functions are those that the library exports, their types those of the header as C sees it. abidiff compares with
+# The functions are those that the library exports, their types those of the headers as C sees them. abidiff compares with
 # no suppression: a struct that grew, as the interface allows, is reported too, and the reference is renewed by hand.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
@@ -12,7 +12,7 @@ usage() {
 Usage: tools/c_abi.sh check LIBRARY [INCLUDE]   compare; 0: the same, or only functions added; 1: anything else
        tools/c_abi.sh renew LIBRARY [INCLUDE]   write the reference anew, after a change that was meant
 
-LIBRARY is libtessera_c.so, INCLUDE the folder of tessera/tessera_c.h [engine/include]. Needs cc, nm, abidw and abidiff
+LIBRARY is libtessera_c.so, INCLUDE the folder of tessera/tessera_c*.h [engine/include]. Needs cc, nm, abidw and abidiff
 (Debian: abigail-tools); without them \`check\` exits with 77.
 TEXT
 }
@@ -33,7 +33,7 @@ for program in cc nm abidw abidiff; do
     exit 77
   fi
 done
-for file in "$library" "$include/tessera/tessera_c.h"; do
+for file in "$library" "$include/tessera/tessera_c.h" "$include/tessera/tessera_c_queries.h"; do
   if [[ ! -f $file ]]; then
     echo "tools/c_abi.sh: expected a file, found none: \"$file\"" >&2
     exit 2
@@ -43,7 +43,7 @@ done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 {
-  echo '#include "tessera/tessera_c.h"'
+  echo '#include "tessera/tessera_c_queries.h"'
   nm -D --defined-only "$library" | sed -n 's/.* T \(tsr_[a-z0-9_]*\)@@\(.*\)$/__typeof__(\1)* \1_of_\2;/p'
 } >"$scratch/interface.c"
 (cd "$scratch" && cc -std=gnu99 -g -fPIC -shared -I"$include" interface.c -o interface.so)

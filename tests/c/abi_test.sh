@@ -9,21 +9,26 @@ library=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/tessera"
-header=$1/engine/include/tessera/tessera_c.h
+headers=$1/engine/include/tessera
+cp "$headers"/tessera_c.h "$headers"/tessera_c_queries.h "$scratch/tessera"
 plant() {
-  sed "$1" "$header" >"$scratch/tessera/tessera_c.h"
-  if cmp -s "$header" "$scratch/tessera/tessera_c.h"; then
-    echo "nothing was planted: $1" >&2
+  local header=$1
+  sed "$2" "$headers/$header" >"$scratch/tessera/$header"
+  if cmp -s "$headers/$header" "$scratch/tessera/$header"; then
+    echo "nothing was planted: $2" >&2
     exit 1
   fi
   if "$abi" check "$library" "$scratch" >"$scratch/report" 2>&1; then
-    echo "a change was not found: $1" >&2
+    echo "a change was not found: $2" >&2
     cat "$scratch/report" >&2
     exit 1
   fi
   grep -q "the binary interface changed" "$scratch/report"
+  cp "$headers/$header" "$scratch/tessera"
 }
-plant 's/int32_t degree_u, degree_v; /int32_t degree_v, degree_u; /'
-plant 's/  double fit_tolerance;/  double more, fit_tolerance;/'
-plant 's/  uint64_t unused_loops;/  uint64_t unused_loops, more;/'
-plant 's/size_t count, const double\* points, size_t point_count);/size_t count, const float* points, size_t point_count);/'
+plant tessera_c.h 's/int32_t degree_u, degree_v; /int32_t degree_v, degree_u; /'
+plant tessera_c.h 's/  double fit_tolerance;/  double more, fit_tolerance;/'
+plant tessera_c.h 's/  uint64_t unused_loops;/  uint64_t unused_loops, more;/'
+plant tessera_c.h \
+  's/size_t count, const double\* points, size_t point_count);/size_t count, const float* points, size_t point_count);/'
+plant tessera_c_queries.h 's/  double volume, volume_error; /  double volume_error, volume; /'

@@ -5,16 +5,9 @@
 
 #include "tessera/tessera_c.h"
 
-int layout_faults(void);
+#include "layout.h"
 
-#define PLACE(type, member, at) {#type "." #member, offsetof(type, member), at}
-#define SIZE(type, size) {"sizeof " #type, sizeof(type), size}
-#define VALUE(name, value) {#name, name, value}
-
-static const struct {
-  const char* name;
-  size_t found, wanted;
-} layout[] = {
+static const struct layout layout[] = {
     PLACE(tsr_run, struct_size, 0),
     PLACE(tsr_run, threads, 8),
     PLACE(tsr_run, reserved, 12),
@@ -259,17 +252,18 @@ static const struct {
     VALUE(TSR_HIT_TANGENTIAL, 16),
     VALUE(TSR_HIT_WITHIN_TOLERANCE, 32),
     VALUE(TSR_HIT_EDGE, 64),
+    {NULL, 0, 0},
 };
 
-/* Counts what is not as it was. */
-int layout_faults(void) {
+static int faults_of(const struct layout* table) {
   int faults = 0;
-  size_t k;
-  for (k = 0; k < sizeof layout / sizeof layout[0]; ++k) {
-    if (layout[k].found == layout[k].wanted) continue;
-    fprintf(stderr, "%s: expected %lu, found %lu\n", layout[k].name, (unsigned long)layout[k].wanted,
-            (unsigned long)layout[k].found);
+  for (; table->name != NULL; ++table) {
+    if (table->found == table->wanted) continue;
+    fprintf(stderr, "%s: expected %lu, found %lu\n", table->name, (unsigned long)table->wanted,
+            (unsigned long)table->found);
     ++faults;
   }
   return faults;
 }
+
+int layout_faults(void) { return faults_of(layout) + faults_of(layout_of_queries); }

@@ -4,9 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "tessera/tessera_c.h"
-
-int layout_faults(void);
+#include "layout.h"
+#include "tessera/tessera_c_queries.h"
 
 static int failed(tsr_status status, const char* what) {
   if (status == TSR_OK) return 0;

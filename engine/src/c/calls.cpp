@@ -33,7 +33,9 @@ void watch_forks() {
   });
 }
 
-constexpr std::array kind_names{"model", "set", "plan", "scene", "list of hits"};
+constexpr std::array kind_names{"model",           "set",   "plan",     "scene",   "list of hits",
+                                "scene of points", "solid", "measures", "sections"};
+static_assert(kind_names.size() == static_cast<std::size_t>(Object::Kind::sections) + 1);
 const char* name_of(Object::Kind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
 
 constexpr std::array status_names{"ok",

@@ -18,7 +18,7 @@
 #include "tessera/guard.h"
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
-#include "tessera/tessera_c.h"
+#include "tessera/tessera_c_queries.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -8,9 +8,13 @@
 
 #include "c/calls.h"
 #include "tessera/evaluate.h"
+#include "tessera/measures.h"
 #include "tessera/model.h"
+#include "tessera/nearest_points.h"
 #include "tessera/patch_set.h"
 #include "tessera/ray_scene.h"
+#include "tessera/sections.h"
+#include "tessera/solid.h"
 #include "tessera/tessellation.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -85,6 +89,60 @@ struct CHits : Object {
   static constexpr Kind of_kind = Kind::hits;
   CHits() : Object(of_kind) {}
   HitLists lists;
+};
+
+struct CPointScene : Object {
+  static constexpr Kind of_kind = Kind::point_scene;
+  CPointScene(PointScene of, std::shared_ptr<CSet> from)
+      : Object(of_kind), set(std::move(from)), scene(std::move(of)) {}
+  std::shared_ptr<CSet> set;  ///< outlives the scene, which refers to it
+  PointScene scene;
+  Usage usage;
+};
+
+/// A solid never changes, but its scene does.
+struct CSolid : Object {
+  static constexpr Kind of_kind = Kind::solid;
+  CSolid(Solid of, std::shared_ptr<CScene> from)
+      : Object(of_kind), scene(std::move(from)), set(scene->set), usage(scene->usage), solid(std::move(of)) {}
+  std::shared_ptr<CScene> scene;  ///< outlives the solid, which refers to it
+  std::shared_ptr<CSet> set;      ///< the scene's
+  Usage& usage;                   ///< the scene's
+  Solid solid;
+};
+
+/// Measures never change.
+struct CMeasures : Object {
+  static constexpr Kind of_kind = Kind::measures;
+  CMeasures() : Object(of_kind) {}
+  std::optional<AreaMeasures> areas;
+  std::optional<std::vector<BodyMeasures>> bodies;
+  std::optional<MeasuredBox> box;
+};
+
+/// Sections never change.
+struct CSections : Object {
+  static constexpr Kind of_kind = Kind::sections;
+  explicit CSections(Sections of) : Object(of_kind), sections(std::move(of)) {}
+  Sections sections;
+};
+
+/// An object that was made of a set, and the set, which the call reads both.
+template <class T>
+class InUse {
+ public:
+  explicit InUse(const void* handle)
+      : held_(handle), own_(held_ ? &held_->usage : nullptr), of_set_(held_ ? &held_->set->usage : nullptr) {}
+  CStatus check() const {
+    if (!held_) return held_.error();
+    return own_ ? (of_set_ ? CStatus() : in_use(Object::Kind::set)) : in_use(T::of_kind);
+  }
+  T* operator->() const { return held_.operator->(); }
+  std::shared_ptr<T> shared() const { return held_.shared(); }
+
+ private:
+  Held<T> held_;
+  Reading own_, of_set_;
 };
 
 }}  // namespace tessera::abi_0_1

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "c/objects.h"
+#include "c/records.h"
 #include "tessera/limits.h"
 
 using namespace tessera;
@@ -14,33 +15,15 @@ static_assert(sizeof(HitKind) == 1 && static_cast<int>(HitKind::hit) == TSR_HIT 
               static_cast<int>(HitKind::invalid_ray) == TSR_INVALID_RAY);
 static_assert(sizeof(HitFlags) == 1);
 
-/// A view that holds for all rays has one record, and stride 0 in C++.
-template <class T, int N>
-CStatus ray_view(const char* name, const tsr_in& in, std::size_t rays, VectorView<const T, N>& view) {
-  if (CStatus status = view_of(name, in, view); status.code) return status;
-  if (in.data && in.count == 1 && rays != 1) view.stride = 0;
-  return {};
-}
-
 template <class T>
 CStatus rays_of(const tsr_rays& from, RayViews<T>& rays) {
   const std::size_t count = from.direction.count;
   if (!from.origin.data || !from.direction.data) return null_pointer(from.origin.data ? "direction" : "origin");
   if (CStatus status = view_of("direction", from.direction, rays.direction); status.code) return status;
-  if (CStatus status = ray_view("origin", from.origin, count, rays.origin); status.code) return status;
-  if (CStatus status = ray_view("tnear", from.tnear, count, rays.tnear); status.code) return status;
-  if (CStatus status = ray_view("tfar", from.tfar, count, rays.tfar); status.code) return status;
-  return ray_view("spawn_offset", from.spawn_offset, count, rays.spawn_offset);
-}
-
-/// One component of a view of two.
-tsr_out component_of(const tsr_out& pair, std::int64_t size, int c) {
-  tsr_out one = pair;
-  if (one.record == 0) one.record = 2 * size;
-  const std::int64_t step = pair.component == 0 ? size : pair.component;
-  if (pair.data) one.data = static_cast<char*>(pair.data) + c * step;
-  one.component = 0;
-  return one;
+  if (CStatus status = view_for_all("origin", from.origin, count, rays.origin); status.code) return status;
+  if (CStatus status = view_for_all("tnear", from.tnear, count, rays.tnear); status.code) return status;
+  if (CStatus status = view_for_all("tfar", from.tfar, count, rays.tfar); status.code) return status;
+  return view_for_all("spawn_offset", from.spawn_offset, count, rays.spawn_offset);
 }
 
 template <class T>
@@ -138,22 +121,6 @@ CStatus write_hits(const std::vector<Hit>& hits, const tsr_hits_out& out) {
   return status;
 }
 
-/// A scene and its set, which the call reads.
-class SceneInUse {
- public:
-  explicit SceneInUse(const tsr_scene* scene)
-      : scene_(scene), own_(scene_ ? &scene_->usage : nullptr), of_set_(scene_ ? &scene_->set->usage : nullptr) {}
-  CStatus check() const {
-    if (!scene_) return scene_.error();
-    return own_ ? (of_set_ ? CStatus() : in_use(Object::Kind::set)) : in_use(Object::Kind::scene);
-  }
-  const RayScene& scene() const { return scene_->scene; }
-
- private:
-  Held<CScene> scene_;
-  Reading own_, of_set_;
-};
-
 }}}  // namespace tessera::abi_0_1
 
 extern "C" {
@@ -197,22 +164,22 @@ tsr_status tsr_scene_refit(tsr_scene* scene, const tsr_run* run) {
 
 tsr_status tsr_scene_describe(const tsr_scene* scene, tsr_scene_info* info) {
   return c_call([&]() -> CStatus {
-    const SceneInUse of(scene);
+    const InUse<CScene> of(scene);
     if (CStatus status = of.check(); status.code) return status;
-    const Box3 box = of.scene().box();
+    const Box3 box = of->scene.box();
     return write_struct("tsr_scene_info", info,
                         {0,
-                         of.scene().memory_bytes(),
+                         of->scene.memory_bytes(),
                          {box.lower.x, box.lower.y, box.lower.z},
                          {box.upper.x, box.upper.y, box.upper.z},
-                         of.scene().spawn_offset()});
+                         of->scene.spawn_offset()});
   });
 }
 
 tsr_status tsr_scene_closest(const tsr_scene* scene, const tsr_rays* rays, const tsr_hits_out* hits,
                              const tsr_run* run) {
   return c_call([&]() -> CStatus {
-    const SceneInUse of(scene);
+    const InUse<CScene> of(scene);
     if (CStatus status = of.check(); status.code) return status;
     if (!rays || !hits) return null_pointer(rays ? "hits" : "rays");
     tsr_rays from{};
@@ -222,7 +189,7 @@ tsr_status tsr_scene_closest(const tsr_scene* scene, const tsr_rays* rays, const
     return run_work(run, [&](const Execution& execution) {
       const auto call = from.is_double ? (to.is_double ? &closest_of<double, double> : &closest_of<double, float>)
                                        : (to.is_double ? &closest_of<float, double> : &closest_of<float, float>);
-      return call(of.scene(), from, to, execution);
+      return call(of->scene, from, to, execution);
     });
   });
 }
@@ -230,14 +197,14 @@ tsr_status tsr_scene_closest(const tsr_scene* scene, const tsr_rays* rays, const
 tsr_status tsr_scene_occluded(const tsr_scene* scene, const tsr_rays* rays, const tsr_out* occluded,
                               const tsr_run* run) {
   return c_call([&]() -> CStatus {
-    const SceneInUse of(scene);
+    const InUse<CScene> of(scene);
     if (CStatus status = of.check(); status.code) return status;
     if (!rays || !occluded) return null_pointer(rays ? "occluded" : "rays");
     tsr_rays from{};
     if (CStatus status = read_struct("tsr_rays", rays, from); status.code) return status;
     return run_work(run, [&](const Execution& execution) {
       const auto call = from.is_double ? &occluded_of<double> : &occluded_of<float>;
-      return call(of.scene(), from, *occluded, execution);
+      return call(of->scene, from, *occluded, execution);
     });
   });
 }
@@ -245,7 +212,7 @@ tsr_status tsr_scene_occluded(const tsr_scene* scene, const tsr_rays* rays, cons
 tsr_status tsr_scene_all(tsr_hits** hits, const tsr_scene* scene, const tsr_rays* rays, const tsr_run* run) {
   if (hits) *hits = nullptr;
   return c_call([&]() -> CStatus {
-    const SceneInUse of(scene);
+    const InUse<CScene> of(scene);
     if (CStatus status = of.check(); status.code) return status;
     if (!rays || !hits) return null_pointer(rays ? "hits" : "rays");
     tsr_rays from{};
@@ -255,7 +222,7 @@ tsr_status tsr_scene_all(tsr_hits** hits, const tsr_scene* scene, const tsr_rays
       if (CStatus status = from.is_double ? ray_list<double>(from, list) : ray_list<float>(from, list); status.code)
         return status;
       auto found = std::make_shared<CHits>();
-      if (Status status = of.scene().all(list, found->lists, execution); !status.ok()) return status;
+      if (Status status = of->scene.all(list, found->lists, execution); !status.ok()) return status;
       return give(hits, std::move(found));
     });
   });
