@@ -23,11 +23,14 @@ from .errors import (
 )
 from .jets import Jets
 from .limits import Limits, Measurement, limits, measure
+from .measures import Area, Body, Box, Measures
 from .meshes import Mesh, MeshReport
 from .models import Assembly, Instance, Model, PatchSet, Scene, Surface
 from .patches import Patch
 from .plans import View
+from .points import NearestPoints, PointScene, Sides, Solid
 from .rays import HIT, INVALID_RAY, MISS, Hits
+from .sections import PlaneSection, Polyline, Sections, sections
 from .shapes import cone, coons, cylinder, extrude, interpolate, plane, revolve, ruled, sphere, torus
 from .sources import bezier, model, nurbs, parse, read
 from .splines import Spline
@@ -39,9 +42,12 @@ __all__ = [
     "HIT",
     "INVALID_RAY",
     "MISS",
+    "Area",
     "ArgumentError",
     "ArgumentTypeError",
     "Assembly",
+    "Body",
+    "Box",
     "CancelledError",
     "Curve",
     "Error",
@@ -51,14 +57,22 @@ __all__ = [
     "Jets",
     "Limits",
     "Measurement",
+    "Measures",
     "Mesh",
     "MeshReport",
     "MissingError",
     "Model",
+    "NearestPoints",
     "OutOfMemoryError",
     "Patch",
     "PatchSet",
+    "PlaneSection",
+    "PointScene",
+    "Polyline",
     "Scene",
+    "Sections",
+    "Sides",
+    "Solid",
     "Spline",
     "StateError",
     "Surface",
@@ -83,6 +97,7 @@ __all__ = [
     "read",
     "revolve",
     "ruled",
+    "sections",
     "sphere",
     "threads",
     "torus",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ctypes
 import math
 import operator
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -34,6 +34,45 @@ class NamedArrays:
                 found = ", ".join(self.__dict__) or "none"
                 raise MissingError(f"{name} was not asked for: name it in quantities=[...]; there are {found}")
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+
+_Own = TypeVar("_Own", bound="TypedArrays")
+
+
+class TypedArrays(NamedArrays):
+    """Arrays whose numbers of components and types are known by the names of quantities."""
+
+    _known: ClassVar[Mapping[str, tuple[int, np.dtype]]]
+    _usual: ClassVar[Sequence[str]]
+
+    @classmethod
+    def empty(cls: type[_Own], shape: int | tuple[int, ...], quantities: Sequence[str] | None = None) -> _Own:
+        """Returns arrays to write to."""
+        shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        arrays = {}
+        for name in cls._usual if quantities is None else names_of(quantities):
+            if name not in cls._known:
+                raise ArgumentError(f"{name!r} is no quantity; there are {', '.join(cls._known)}")
+            components, dtype = cls._known[name]
+            arrays[name] = np.empty(shape if components == 1 else (*shape, components), dtype)
+        return cls(**arrays)
+
+    @property
+    def nbytes(self) -> int:
+        return sum(array.nbytes for array in self.__dict__.values())
+
+    def _fill(self, out: Any, shape: tuple[int, ...]) -> Any:
+        """Fills a struct of outputs of ``shape``, and returns it."""
+        for name, array in self.__dict__.items():
+            components, dtype = self._known[name]
+            setattr(out, name, out_view(name, array, dtype, shape, components))
+        return out
+
+    def _needs(self, what: str, *quantities: str) -> None:
+        """Raises an error unless the arrays that a property reads are there."""
+        if any(name not in self.__dict__ for name in quantities):
+            noun = "quantity" if len(quantities) == 1 else "quantities"
+            raise ArgumentError(f"{what} needs the {noun} {' and '.join(quantities)}")
 
 
 def array_of(name: str, value: Any, dtype: Any = np.float64) -> np.ndarray:

@@ -1,4 +1,5 @@
-"""The C library: where it lies, and its structs and functions, declared from two tables as in tessera_c.h."""
+"""The C library: where it lies, and its structs and functions, declared from two tables as in tessera_c.h
+and tessera_c_queries.h."""
 
 from __future__ import annotations
 
@@ -45,13 +46,38 @@ _STRUCTS = {
     "tsr_hits_out": "int32 is_double, int32 reserved, tsr_out kind, tsr_out flags, tsr_out surface, tsr_out patch, "
     "tsr_out t, tsr_out uv, tsr_out patch_uv, tsr_out position, tsr_out normal, tsr_out du, tsr_out dv, "
     "tsr_out residual",
+    "tsr_point_scene_info": "uint64 memory_bytes, uint64 revision",
+    "tsr_query_points": "int32 is_double, int32 reserved, tsr_in position, tsr_in max_distance",
+    "tsr_nearest_out": "int32 is_double, int32 reserved, tsr_out kind, tsr_out flags, tsr_out surface, tsr_out patch, "
+    "tsr_out distance, tsr_out uv, tsr_out patch_uv, tsr_out position, tsr_out normal",
+    "tsr_solid_info": "uint64 open_borders, int32 is_closed, int32 reserved",
+    "tsr_sides_out": "tsr_out side, tsr_out is_certified",
+    "tsr_measure_options": "double accuracy, uint64 max_cells, uint32 flags, uint32 reserved",
+    "tsr_measures_info": "uint64 surfaces, uint64 bodies, uint64 faults",
+    "tsr_area": "double area, double area_error, double centroid[3], double centroid_error, int32 is_proven, "
+    "int32 reserved",
+    "tsr_body": "uint32 instance, uint32 shape, uint32 solid, uint32 shell, double volume, double volume_error, "
+    "double centroid[3], double centroid_error, double inertia[6], double inertia_error, double moments[3], "
+    "double moments_error, double axes[9], double gap, int32 is_proven, int32 reserved",
+    "tsr_box": "double low[3], double high[3], double low_error[3], double high_error[3], int32 is_proven, "
+    "int32 reserved",
+    "tsr_section_options": "double tolerance, double contact, double max_gap, uint64 max_points, int32 limit, "
+    "int32 reserved",
+    "tsr_sections_info": "uint64 planes, uint64 polylines, uint64 points, uint64 contacts, uint64 coplanar, "
+    "uint64 unproven, double tolerance, double contact_size",
+    "tsr_plane_section": "double offset, uint64 first_polyline, uint64 polyline_count, uint64 first_contact, "
+    "uint64 contact_count, uint64 first_coplanar, uint64 coplanar_count, uint64 open_count, double length, "
+    "double bound, double largest_gap, int32 limit, int32 reserved",
+    "tsr_sections_out": "tsr_out first, tsr_out is_closed, tsr_out length, tsr_out position, tsr_out uv, "
+    "tsr_out patch, tsr_out bridges_gap, tsr_out contact_position, tsr_out contact_patch, "
+    "tsr_out contact_is_tangent, tsr_out coplanar, tsr_out unproven",
     "tsr_limits_info": "double float_operations_per_second, double double_operations_per_second, "
     "double store_bytes_per_second",
 }
 _WITHOUT_SIZE = ("tsr_in", "tsr_out")
 
 # --- Functions --------------------------------------------------------------------------------------------------------
-# The result and the arguments: i int32, u uint32, s size_t, d double, z text, p a pointer of any kind, - nothing.
+# The result and the arguments: i int32, u uint32, l int64, s size_t, d double, z text, p a pointer of any kind, - nothing.
 _FUNCTIONS = {
     "tsr_version": "u",
     "tsr_last_message": "zp",
@@ -92,6 +118,26 @@ _FUNCTIONS = {
     "tsr_scene_occluded": "ipppp",
     "tsr_scene_all": "ipppp",
     "tsr_hits_read": "ipppp",
+    "tsr_point_scene_new": "ippp",
+    "tsr_point_scene_refit": "ipp",
+    "tsr_point_scene_describe": "ipp",
+    "tsr_point_scene_nearest": "ipppp",
+    "tsr_solid_new": "ippp",
+    "tsr_solid_describe": "ipp",
+    "tsr_solid_contains": "ipppp",
+    "tsr_solid_distances": "ippppp",
+    "tsr_measure_defaults": "-p",
+    "tsr_measures_new": "ipppp",
+    "tsr_measures_describe": "ipp",
+    "tsr_measures_fault": "zpsp",
+    "tsr_measures_area": "iplp",
+    "tsr_measures_body": "iplp",
+    "tsr_measures_box": "ipp",
+    "tsr_section_defaults": "-p",
+    "tsr_sections_new": "ippppspp",
+    "tsr_sections_describe": "ipp",
+    "tsr_sections_plane": "ipsp",
+    "tsr_sections_read": "ipp",
     "tsr_limits": "isp",
     "tsr_set_grid_limit": "ipssppp",
 }
@@ -110,6 +156,7 @@ _TYPES: dict[str, Any] = {
 _LETTERS = {
     "i": ctypes.c_int32,
     "u": ctypes.c_uint32,
+    "l": ctypes.c_int64,
     "s": ctypes.c_size_t,
     "d": ctypes.c_double,
     "z": ctypes.c_char_p,

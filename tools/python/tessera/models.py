@@ -14,6 +14,7 @@ from ._arrays import index_of, positive_of
 from ._calls import Handle, call
 from ._library import library, struct
 from .jets import Jets, evaluate_surface
+from .measures import Measures
 from .meshes import Mesh, mesh_for_view, warn_of_rounding
 from .patches import PatchSetBase
 from .rays import SceneBase
@@ -223,6 +224,14 @@ class Model(Handle, Shown):
         """Returns a mesh of each shape, at all its places, or of all surfaces if there are no shapes. The options are
         those of PatchSet.tessellate()."""
         return Assembly(self, tolerance, **options)
+
+    def measure(self, accuracy: float = 1e-10, max_cells: int = 4096, enclosed: bool = False) -> Measures:
+        """Returns the areas, the volume, the centroid, the inertia and the tight box, each with a bound of its error.
+
+        ``accuracy``: the error as a share, 1e-14 to 1e-2; ``max_cells``: parts of a patch. ``enclosed``: the body is what
+        all surfaces enclose, which leave no gap and have normals on one side, instead of the solids of the file.
+        """
+        return Measures(self, accuracy, max_cells, enclosed)
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Writes the surfaces (.json, .obj, .bpt); with options, such as a tolerance, their meshes (.glb, .ply)."""

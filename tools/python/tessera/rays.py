@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from ._arrays import (
-    NamedArrays,
+    TypedArrays,
     address_of,
     array_of,
     check_out,
     in_view,
     integer_of,
-    names_of,
     out_view,
     positive_of,
     records_of,
@@ -47,7 +46,7 @@ _LONG = 5_000  # rays, below which a call is over at once
 MISS, HIT, INVALID_RAY = range(3)
 
 
-class Hits(NamedArrays):
+class Hits(TypedArrays):
     """The hits of rays, an array per quantity. A miss has t = inf, indices of 0xffffffff and 0 elsewhere.
 
     ``kind``: MISS, HIT or INVALID_RAY; ``flags``: bits of TSR_HIT_* in tessera_c.h; ``surface``, ``patch``; ``t``;
@@ -58,6 +57,7 @@ class Hits(NamedArrays):
     """
 
     _known = QUANTITIES
+    _usual = _USUAL
 
     kind: np.ndarray
     flags: np.ndarray
@@ -72,35 +72,17 @@ class Hits(NamedArrays):
     dv: np.ndarray
     residual: np.ndarray
 
-    @classmethod
-    def empty(cls, shape: int | tuple[int, ...], quantities: Sequence[str] | None = None) -> Hits:
-        """Returns arrays to write to."""
-        shape = (shape,) if isinstance(shape, int) else tuple(shape)
-        arrays = {}
-        for name in _USUAL if quantities is None else names_of(quantities):
-            if name not in QUANTITIES:
-                raise ArgumentError(f"{name!r} is no quantity; there are {', '.join(QUANTITIES)}")
-            components, dtype = QUANTITIES[name]
-            arrays[name] = np.empty(shape if components == 1 else (*shape, components), dtype)
-        return cls(**arrays)
-
     @property
     def is_hit(self) -> np.ndarray:
         """Whether each ray meets a surface."""
-        if "kind" not in self.__dict__:
-            raise ArgumentError("is_hit needs the quantity kind")
+        self._needs("is_hit", "kind")
         return self.kind == HIT
 
     @property
     def certified(self) -> np.ndarray:
         """Whether each ray has a hit that is proven to be the only root nearby."""
-        if "flags" not in self.__dict__:
-            raise ArgumentError("certified needs the quantities kind and flags")
+        self._needs("certified", "kind", "flags")
         return self.is_hit & (self.flags & _UNCERTIFIED == 0)
-
-    @property
-    def nbytes(self) -> int:
-        return sum(array.nbytes for array in self.__dict__.values())
 
     def __repr__(self) -> str:
         if "kind" not in self.__dict__:
@@ -111,10 +93,7 @@ class Hits(NamedArrays):
     def _struct(self, shape: tuple[int, ...]) -> Any:
         out = struct("tsr_hits_out")
         out.is_double = 1
-        for name, array in self.__dict__.items():
-            components, dtype = QUANTITIES[name]
-            setattr(out, name, out_view(name, array, dtype, shape, components))
-        return out
+        return self._fill(out, shape)
 
 
 class _Rays:

@@ -49,6 +49,10 @@ part: ts.Spline = model[0].elevate(u=1).split(v=0.5)[0]
 u, v = model[0].degree
 names: list[str] = [surface.name for surface in model.surfaces]
 points: np.ndarray = model[0].points[u:, v:] + model[0].weights[u:, v:, None]
+near = ts.PointScene(model).nearest([0, 0, 9])
+size += float(near.distance + near.u.sum() + ts.Solid(model).signed_distance([0, 0, 1]) + near.certified.mean())
+size += model.measure().volume + model.measure(enclosed=True).box.low[0]
+length: float = ts.sections(model, [0, 0, 1], [0.0, 0.5], tolerance=1e-3)[0].polylines[0].length
 wrong: str = mesh.bound
 """
 
@@ -64,4 +68,4 @@ def test_a_type_checker_needs_no_asserts(tmp_path):
         [*command, "use.py", "tessera"], cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True
     )
     first, *rest = ran.stdout.splitlines()
-    assert first.startswith("use.py:16: error: Incompatible types in assignment") and len(rest) == 1, ran.stdout
+    assert first.startswith("use.py:20: error: Incompatible types in assignment") and len(rest) == 1, ran.stdout
