@@ -40,6 +40,22 @@ TEST(Nearest, OfASphereAlongTheRadius) {
   }
 }
 
+/// All points of a circle of latitude are as far away, and none of them is the nearest. The limit of work ends some proofs,
+/// but the nearest point is found before.
+TEST(Nearest, OfASphereFromItsAxis) {
+  const PatchSet set = set_of(sphere());
+  const PointScene scene = value_of(PointScene::make(set));
+  for (int k = 1; k < 500; ++k) {
+    for (const double beside : {0.0, 1e-12, 1e-6, 1e-4}) {
+      const double height = (k < 250 ? 1 : -1) * (0.02 + 0.97 * (k % 250) / 250);
+      const NearestPoint found = scene.nearest({beside, 0.5 * beside, height});
+      ASSERT_EQ(found.kind, NearestKind::found);
+      EXPECT_NEAR(found.distance, 1 - std::hypot(beside, 0.5 * beside, height), 1e-13) << height;
+      EXPECT_GT(found.position.z * height, 0.9 * std::abs(height)) << height;
+    }
+  }
+}
+
 TEST(Nearest, OfAPlaneStraightDownOrOnItsBorder) {
   const PatchSet set = set_of({square(0)});
   const PointScene scene = value_of(PointScene::make(set));

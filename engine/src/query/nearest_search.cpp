@@ -36,7 +36,7 @@ void NearestSearch::search() {
   deferred_.clear();
   pieces_.tree().visit_near(scene_point_, *this);
   for (const Deferred& one : deferred_)
-    if (one.lower <= reach_) branch(*one.piece);
+    if (one.lower <= reach_ && !branch(*one.piece, max_parts)) outcome_.complete = false;
 }
 
 NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance) {
@@ -116,10 +116,8 @@ bool NearestSearch::visit(std::uint32_t item, double distance) {
     ++outcome_.parts;
     if (is_decided(piece, piece.area, piece.facts)) return true;
     // The nearest kept point of a cut piece may lie on a curve: once that is known, few parts of the piece are left.
-    if (piece.is_cut)
-      deferred_.push_back({&piece, distance});
-    else
-      branch(piece);
+    const bool has_work = !piece.is_cut && outcome_.parts < max_first_parts;
+    if (!has_work || !branch(piece, first_parts)) deferred_.push_back({&piece, distance});
     return true;
   }
   const KeptCurve& curve = pieces_.curves()[item - pieces.size()];
@@ -160,9 +158,11 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   return foot.converged;
 }
 
-/// Halves a piece until each part is decided, or cannot be nearer by more than rounding.
-void NearestSearch::branch(const QueryPiece& piece) {
+/// Halves a piece until each part is decided, or cannot be nearer by more than rounding. Returns whether `parts` sufficed,
+/// and what is left of max_parts.
+bool NearestSearch::branch(const QueryPiece& piece, int parts) {
   const double scale = pieces_.frame().scale;
+  const int limit = std::min(max_parts, outcome_.parts + parts);
   stack_.clear();
   push(piece, piece.area);
   while (!stack_.empty()) {
@@ -178,16 +178,14 @@ void NearestSearch::branch(const QueryPiece& piece) {
     const double rounding = outcome_.slack * scale, near = outcome_.best.distance * scale;
     const double point_size = places_ ? std::max(4 * rounding, near) : 4 * rounding;
     if (part.lower >= near - (places_ ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
-    if (++outcome_.parts >= max_parts || stack_.size() + 2 > max_stack) {
-      outcome_.complete = false;
-      return;
-    }
+    if (++outcome_.parts >= limit || stack_.size() + 2 > max_stack) return false;
     const auto [lower, upper] = halves(area, part.bounds.facts);
     push(piece, lower), push(piece, upper);
     const std::size_t count = stack_.size();
     if (count >= 2 && stack_[count - 2].lower < stack_[count - 1].lower)
       std::swap(stack_[count - 2], stack_[count - 1]);
   }
+  return true;
 }
 
 /// Puts a part on the stack, unless loops cut it away or it is too far.

@@ -46,6 +46,9 @@ class NearestSearch {
   /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
   /// search ends before.
   static constexpr int max_parts = 2000;
+  /// The work that a piece gets, and all together, before each piece was looked at. Where the surface is as far away along
+  /// a curve, as from the axis of a rotation, pieces that are not the nearest would take all of it.
+  static constexpr int first_parts = 48, max_first_parts = max_parts / 4;
 
  private:
   friend class QueryTree;
@@ -57,7 +60,7 @@ class NearestSearch {
 
   double reach() const { return reach_; }
   bool visit(std::uint32_t item, double distance);
-  void branch(const QueryPiece& piece);
+  bool branch(const QueryPiece& piece, int parts);
   void start(const Vec3& point, double max_distance);
   void search();
   void polish(NearCandidate& candidate) const;
@@ -77,7 +80,7 @@ class NearestSearch {
   NetParts nets_;
   std::uint32_t patch_of_nets_ = no_id;
   std::vector<Part> stack_;
-  /// A cut piece that is not decided as a whole.
+  /// A piece that is not decided as a whole: a cut one, or one that took more than first_parts.
   struct Deferred {
     const QueryPiece* piece;
     double lower;  ///< bounds its distance, in the scene's coordinates
