@@ -1,4 +1,5 @@
-/* The layout of all structs of tessera_c_queries.h on 64-bit machines, and the values of its constants, as in layout.c. */
+/* The layout of all structs of tessera_c_queries.h on 64-bit machines, and the values of its constants: see
+ * layout.c. */
 
 #include "tessera/tessera_c_queries.h"
 

@@ -40,8 +40,8 @@ TEST(Nearest, OfASphereAlongTheRadius) {
   }
 }
 
-/// All points of a circle of latitude are as far away, and none of them is the nearest. The limit of work ends some proofs,
-/// but the nearest point is found before.
+/// All points of a circle of latitude are as far away, and none of them is the nearest. The limit of work ends some
+/// proofs, but the nearest point is found before.
 TEST(Nearest, OfASphereFromItsAxis) {
   const PatchSet set = set_of(sphere());
   const PointScene scene = value_of(PointScene::make(set));

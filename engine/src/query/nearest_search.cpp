@@ -158,8 +158,8 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   return foot.converged;
 }
 
-/// Halves a piece until each part is decided, or cannot be nearer by more than rounding. Returns whether `parts` sufficed,
-/// and what is left of max_parts.
+/// Halves a piece until each part is decided, or cannot be nearer by more than rounding. Returns whether `parts`
+/// sufficed, and what is left of max_parts.
 bool NearestSearch::branch(const QueryPiece& piece, int parts) {
   const double scale = pieces_.frame().scale;
   const int limit = std::min(max_parts, outcome_.parts + parts);

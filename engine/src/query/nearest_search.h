@@ -46,8 +46,8 @@ class NearestSearch {
   /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
   /// search ends before.
   static constexpr int max_parts = 2000;
-  /// The work that a piece gets, and all together, before each piece was looked at. Where the surface is as far away along
-  /// a curve, as from the axis of a rotation, pieces that are not the nearest would take all of it.
+  /// The work that a piece gets, and all together, before each piece was looked at. Where the surface is as far away
+  /// along a curve, as from the axis of a rotation, pieces that are not the nearest would take all of it.
   static constexpr int first_parts = 48, max_first_parts = max_parts / 4;
 
  private:

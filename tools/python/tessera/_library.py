@@ -77,7 +77,7 @@ _STRUCTS = {
 _WITHOUT_SIZE = ("tsr_in", "tsr_out")
 
 # --- Functions --------------------------------------------------------------------------------------------------------
-# The result and the arguments: i int32, u uint32, l int64, s size_t, d double, z text, p a pointer of any kind, - nothing.
+# The result and the arguments: i int32, u uint32, l int64, s size_t, d double, z text, p any pointer, - nothing.
 _FUNCTIONS = {
     "tsr_version": "u",
     "tsr_last_message": "zp",

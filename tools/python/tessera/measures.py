@@ -35,8 +35,8 @@ class Body:
     """A solid or a closed shell, of density 1. Each number is off by at most its error.
 
     ``instance``, ``shape``, ``solid``, ``shell``: where it is in the model, None where it is of no such; ``inertia``
-    (3, 3) about the centroid, with its principal ``moments``, rising, and their unit ``axes``, one per row; ``gap``: the
-    largest distance of two faces along an edge, whose slits are part of the errors.
+    (3, 3) about the centroid, with its principal ``moments``, rising, and their unit ``axes``, one per row; ``gap``:
+    the largest distance of two faces along an edge, whose slits are part of the errors.
     """
 
     instance: int | None

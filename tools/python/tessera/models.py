@@ -228,8 +228,8 @@ class Model(Handle, Shown):
     def measure(self, accuracy: float = 1e-10, max_cells: int = 4096, enclosed: bool = False) -> Measures:
         """Returns the areas, the volume, the centroid, the inertia and the tight box, each with a bound of its error.
 
-        ``accuracy``: the error as a share, 1e-14 to 1e-2; ``max_cells``: parts of a patch. ``enclosed``: the body is what
-        all surfaces enclose, which leave no gap and have normals on one side, instead of the solids of the file.
+        ``accuracy``: the error as a share, 1e-14 to 1e-2; ``max_cells``: parts of a patch. ``enclosed``: the body is
+        what all surfaces enclose, which leave no gap and have normals on one side, instead of the solids of the file.
         """
         return Measures(self, accuracy, max_cells, enclosed)
 
