@@ -79,7 +79,8 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure({}, 2,
-                 "expected a command (info, eval, tessellate, raycast, convert, check, measure, completion, man or "
+                 "expected a command (info, eval, tessellate, raycast, convert, project, section, check, measure, "
+                 "completion, man or "
                  "help), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
