@@ -191,7 +191,8 @@ function(build_by_pkg_config prefix)
     execute_process(COMMAND ${PKG_CONFIG} --cflags --libs tessera-c OUTPUT_VARIABLE flags
       OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
     separate_arguments(flags UNIX_COMMAND "${flags}")
-    run(cc -std=c99 ${SOURCE}/tests/c/program.c ${SOURCE}/tests/c/layout.c -o ${WORK}/pkg_config/program ${flags} -lm)
+    run(cc -std=c99 ${SOURCE}/tests/c/program.c ${SOURCE}/tests/c/layout.c ${SOURCE}/tests/c/layout_of_queries.c
+      -o ${WORK}/pkg_config/program ${flags} -lm)
     run_in(pkg_config program)
   endif()
   unset(ENV{LD_LIBRARY_PATH})
