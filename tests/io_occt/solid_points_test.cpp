@@ -19,7 +19,7 @@
 
 namespace tessera::test { namespace {
 
-/// What the points of all files showed.
+/// Counts of the points of all files.
 struct SolidTally {
   std::size_t files = 0, open = 0, points = 0, certified = 0, inside = 0, near = 0, differ = 0;
   double ours = 0, theirs = 0;  ///< seconds

@@ -107,7 +107,7 @@ TEST(Solids, InstancesArePlaced) {
     EXPECT_EQ(found[k].instance, k);
     expect_measured(found[k].volume, 6 * std::abs(maps[k].determinant()), 1e-9, what);
     expect_point(found[k].centroid, maps[k].point({0.5, 1, 1.5}), 1e-7, what);
-    // The same, measured where the faces are.
+    // Measured again with the faces themselves placed.
     Shape placed = model.shapes[0];
     for (ShapeFace& face : placed.faces) face.placement = maps[k];
     const BodyMeasures direct = value_of(measure_solids(placed))[0];

@@ -1,5 +1,5 @@
 #pragma once
-// What holds for every section.
+// Properties of every section.
 
 #include <gtest/gtest.h>
 

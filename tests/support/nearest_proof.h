@@ -12,7 +12,7 @@
 
 namespace tessera::test {
 
-/// What nearest points of a class showed.
+/// Counts of the nearest points of a class.
 struct NearestTally {
   std::size_t points = 0, certified = 0;
   std::size_t missed = 0;         ///< points without a nearest one

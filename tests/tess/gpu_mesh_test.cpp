@@ -1,4 +1,4 @@
-// What a GPU takes: tangents, ranges of surfaces, short indices and clusters.
+// Meshes for a GPU: tangents, ranges of surfaces, short indices and clusters.
 
 #include <gtest/gtest.h>
 

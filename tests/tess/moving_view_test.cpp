@@ -120,7 +120,7 @@ TEST(MovingView, TheViewBeforeHoldsUntilTheUpdate) {
   EXPECT_TRUE(good(field.plan.update(field.set, field.mesh.views())).topology);
   EXPECT_GT(field.plan.capacity().triangles, 2 * triangles);
   field.mesh = mesh_of(field.set, field.plan);
-  // The same view again changes nothing; one that sees nothing takes two triangles a patch.
+  // An unchanged view changes nothing; one that sees nothing takes two triangles a patch.
   EXPECT_FALSE(follow(field, orbit(like, 1, 0.6)).topology);
   View away = orbit(like, 1);
   away.target = away.eye + (away.eye - away.target);

@@ -45,7 +45,7 @@ TEST(SurfaceTolerances, EachSurfaceKeepsItsOwnWithoutCracks) {
       EXPECT_LE(distance_to_patch(set.patch(k), middle, tolerance), tolerance);
     }
     EXPECT_GT(triangles[4], 10 * triangles[3]);
-    // As fine as the finest everywhere takes many more.
+    // The finest tolerance everywhere takes many more.
     TessellationOptions fine = options;
     fine.surface_tolerances.clear(), fine.tolerance = 3e-5;
     EXPECT_GT(good(Tessellation::make(set, fine)).capacity().triangles, 2 * plan.capacity().triangles);

@@ -93,7 +93,7 @@ class PointScene {
   /// - `nearest`: at least as many. A point that is not finite is NearestKind::invalid_point.
   /// - `max_distance`: surfaces farther away count as none; at least 0.
   ///
-  /// Of several points that are equally near, the one of the first patch is returned.
+  /// If several points are equally near, the one of the first patch is returned.
   ///
   /// Errors: buffer_too_small, invalid_argument (max_distance), stale, cancelled, out_of_memory.
   Status nearest(std::span<const Vec3> points, std::span<NearestPoint> nearest,

@@ -24,8 +24,8 @@ struct Plane {
   double offset = 0;     ///< finite; in units of length if the normal is a unit vector
 };
 
-/// Which section counts where a plane runs along faces, edges or vertices: the limit of planes that come from one side.
-/// It makes the section of a closed shape closed there, too. Elsewhere both limits are the section itself.
+/// The choice of a section where a plane runs along faces, edges or vertices: the limit of planes that come from one
+/// side. It makes the section of a closed shape closed there, too. Elsewhere both limits are the section itself.
 enum class PlaneLimit : std::uint8_t {
   automatic,  ///< below; above where there is nothing below, as at the bottom of a box
   below,      ///< of planes with a smaller offset

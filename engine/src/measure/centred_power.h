@@ -23,7 +23,7 @@ inline std::size_t count_of(int degree) { return static_cast<std::size_t>(degree
 /// Returns the largest |x| in the ellipse with foci -1 and 1 whose half axes add up to rho.
 inline double ellipse_reach(double rho) { return 0.5 * (rho + 1 / rho); }
 
-/// What sums of a few hundred roundings add to a bound.
+/// Sums of a few hundred numbers round a bound by less than this factor.
 inline constexpr double bound_slack = 1 + 1e-12;
 
 }}  // namespace tessera::abi_0_1

@@ -16,7 +16,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// What is known of the largest value of a coordinate.
+/// The largest value of a coordinate lies between these.
 struct Extent {
   double reached;  ///< a point reaches it
   double bound;    ///< no point exceeds it

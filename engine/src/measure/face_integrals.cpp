@@ -20,7 +20,7 @@ bool is_exact(const ModelSurface& surface) {
   return std::holds_alternative<BezierPatch>(surface.surface) && surface.placement == Affine{};
 }
 
-/// What the fit of a surface adds to the error of its flux: the volume between it and its patches.
+/// Adds the error of a flux by a surface's fit: the volume between the surface and its patches.
 void add_fit_error(const FitError& fit, const Integrals& area, double reach, ExactSums& flux) {
   if (!(fit.distance > 0)) return;
   Integrals all;

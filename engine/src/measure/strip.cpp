@@ -79,7 +79,7 @@ class StripSearch {
     const double enough = std::max(limits_.accuracy * std::min(cell.magnitude(), magnitude_ + cell.magnitude()),
                                    limits_.accuracy * magnitude_ / 64);
     std::optional<StripCell::Found> found = cell.integrate(enough);
-    // What bounds said of the size may be far too much: then the rule must be better.
+    // The bound of the size may be far too large: then the rule must be better.
     const auto is_exact = [&](double share) {
       return found->integrals.error[0] <=
              std::max(share * limits_.accuracy * found->magnitude, limits_.accuracy * magnitude_ / 64);

@@ -21,7 +21,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// What is integrated. r is the position relative to the centre of the moments, n = r_u x r_v.
+/// An integrand. r is the position relative to the centre of the moments, n = r_u x r_v.
 enum class Integrand : std::uint8_t {
   area,  ///< |n|, and |n| r
   flux,  ///< r . n, times 1, x, y, z, xx, yy, zz, xy, yz, zx: from it follow volumes and moments

@@ -12,7 +12,7 @@ namespace tessera { inline namespace abi_0_1 {
 struct StripSquare {
   LocalCurve curve;
   double s0 = 0, s1 = 1;
-  /// Of a half: StripCell::magnitude() of both together, and whether they are halves in s.
+  /// For a half: StripCell::magnitude() of both halves together, and whether they are halves in s.
   double whole_magnitude = 0;
   bool is_half_in_s = false;
 };
@@ -25,7 +25,7 @@ class StripCell {
   bool is_empty() const { return is_empty_; }
   /// A bound of the integral that needs no quadrature: value and error.
   Integrals crude() const;
-  /// What crude() bounds the integral of the constant moment by.
+  /// Returns crude()'s bound of the integral of the constant moment.
   double magnitude() const { return magnitude_; }
   /// Integrals, and about what that of degree 0 would be if nothing cancelled.
   struct Found {

@@ -29,7 +29,7 @@ class NearestSearch {
   /// Refers to both.
   NearestSearch(const SetView& set, const QueryPieces& pieces);
 
-  /// What was found for a point.
+  /// The result for a point.
   struct Outcome {
     NearCandidate best;    ///< patch no_id: nothing within the distance
     bool complete = true;  ///< no point of a piece is nearer by more than slack

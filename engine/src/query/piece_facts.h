@@ -1,6 +1,6 @@
 #pragma once
-// What is known of a piece of a patch: a frame, and bounds on how the piece departs from its tangent plane. They bound
-// the distance of a point from the piece, and tell where that distance is a convex or a monotone function.
+// Facts of a piece of a patch: a frame, and bounds on how the piece departs from its tangent plane. They bound the
+// distance of a point from the piece, and tell where that distance is a convex or a monotone function.
 
 #include <algorithm>
 #include <cmath>

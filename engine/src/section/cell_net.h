@@ -29,7 +29,7 @@ enum class CellKind : std::uint8_t {
 };
 constexpr bool runs_over_u(CellKind kind) { return kind == CellKind::over_u || kind == CellKind::along_u; }
 
-/// What is known about a part of a patch.
+/// Facts about a part of a patch.
 struct CellFacts {
   CellKind kind = CellKind::empty;
   double low = 0, high = 0;  ///< heights

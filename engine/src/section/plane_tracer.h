@@ -19,7 +19,7 @@ struct TracedPlane {
   std::vector<std::uint32_t> coplanar;
 };
 
-/// What all planes of a call have in common.
+/// The data that all planes of a call share.
 struct PlaneTask {
   const PreparedSet* set;
   const Levels* levels;

@@ -27,7 +27,7 @@ struct ProjectOptions {
   double max_distance = std::numeric_limits<double>::infinity();
 };
 
-/// What the nearest points of a table are.
+/// Counts of the nearest points of a table.
 struct ProjectCounts {
   std::size_t found = 0, certified = 0, ambiguous = 0, border = 0;
   double largest = 0, sum = 0;
