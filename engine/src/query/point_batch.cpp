@@ -1,11 +1,7 @@
-#include <algorithm>
-#include <string>
-
 #include "base/impl_access.h"
 #include "base/infinity.h"
-#include "base/text.h"
-#include "eval/grid_checks.h"
 #include "query/point_scene_impl.h"
+#include "ray/scene/batch_checks.h"
 #include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -25,35 +21,6 @@ void for_each_output(const NearestViews<T>& views, const Visit& visit) {
   visit("position", views.position);
   visit("normal", views.normal);
   visit("flags", views.flags);
-}
-
-template <class View>
-bool is_wanted(const View& view) {
-  return std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
-}
-
-template <class T, class U>
-Status check(const PointViews<T>& points, const NearestViews<U>& nearest) {
-  const std::size_t count = points.position.size;
-  if (count == 0) return {};
-  ViewChecks checks(count);
-  checks.add("position", points.position);
-  if (View1<const T> reach = points.max_distance; !reach.empty()) {
-    const std::size_t records = reach.stride == 0 ? 1 : count;
-    if (reach.stride == 0) reach.stride = 1;
-    if (reach.size < records)
-      return {StatusCode::count_mismatch, "max_distance needs " + counted(count, "record") +
-                                              ", or one of stride 0, found " + std::to_string(reach.size)};
-    checks.add("max_distance", reach, records);
-  }
-  bool has_output = false;
-  for_each_output(nearest, [&](const char* name, const auto& view) {
-    if (!is_wanted(view)) return;
-    checks.add(name, view);
-    has_output = true;
-  });
-  if (Status status = checks.status(); !status.ok()) return status;
-  return has_output ? Status() : Status(StatusCode::invalid_argument, "no output is requested");
 }
 
 template <class T>
@@ -79,7 +46,11 @@ template <class T, class U>
 Status nearest_of(const PointScene& scene, const PointViews<T>& points, const NearestViews<U>& nearest,
                   const Execution& execution) {
   return guarded([&]() -> Status {
-    if (Status status = check(points, nearest); !status.ok()) return status;
+    BatchChecks checks(points.position.size);
+    checks.input("position", points.position);
+    if (!points.max_distance.empty()) checks.input("max_distance", points.max_distance);
+    for_each_output(nearest, [&](const char* name, const auto& view) { checks.output(name, view); });
+    if (Status status = checks.status(); !status.ok()) return status;
     const PointScene::Impl& impl = impl_of(scene);
     if (Status status = impl.check_fresh(); !status.ok()) return status;
     const View3<const T>& p = points.position;

@@ -13,7 +13,6 @@ namespace tessera { inline namespace abi_0_1 {
 struct Range {
   double lower = infinity, upper = -infinity;
 
-  static Range around(double middle, double reach) { return {middle - reach, middle + reach}; }
   void extend(double x) { lower = std::min(lower, x), upper = std::max(upper, x); }
   Range widened(double by) const { return {lower - by, upper + by}; }
   double magnitude() const { return std::max(std::abs(lower), std::abs(upper)); }

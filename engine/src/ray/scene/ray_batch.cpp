@@ -7,7 +7,7 @@
 #include "base/impl_access.h"
 #include "base/infinity.h"
 #include "base/text.h"
-#include "eval/grid_checks.h"
+#include "ray/scene/batch_checks.h"
 #include "ray/scene/batch_filter.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
@@ -109,53 +109,14 @@ class HitArrays final : public HitWriter {
   const HitViews<T>& views_;
 };
 
-template <class View>
-bool is_wanted(const View& view) {
-  return std::ranges::any_of(view.component, [](const auto* memory) { return memory != nullptr; });
+template <class T>
+void add_rays(const RayViews<T>& rays, BatchChecks& checks) {
+  checks.input("origin", rays.origin), checks.input("direction", rays.direction);
+  if (!rays.tnear.empty()) checks.input("tnear", rays.tnear);
+  if (!rays.tfar.empty()) checks.input("tfar", rays.tfar);
+  if (!rays.spawn_offset.empty()) checks.input("spawn_offset", rays.spawn_offset);
+  if (!rays.mask.empty()) checks.input("mask", rays.mask);
 }
-
-/// Checks the views of a call one after the other and keeps the first error.
-class BatchChecks {
- public:
-  explicit BatchChecks(std::size_t rays) : rays_(rays), checks_(rays) {}
-
-  /// A view of stride 0 has one record for all rays.
-  template <class T, int N>
-  void input(const char* name, VectorView<T, N> view) {
-    const std::size_t records = view.stride == 0 ? std::min<std::size_t>(rays_, 1) : rays_;
-    if (view.stride == 0) view.stride = 1;
-    if (view.size < records && error_.ok())
-      error_ = Status(StatusCode::count_mismatch, std::string(name) + " needs " + counted(rays_, "record") +
-                                                      ", or one of stride 0, found " + std::to_string(view.size));
-    if (error_.ok()) checks_.add(name, view, records);
-  }
-  template <class T>
-  void add(const RayViews<T>& rays) {
-    input("origin", rays.origin), input("direction", rays.direction);
-    if (!rays.tnear.empty()) input("tnear", rays.tnear);
-    if (!rays.tfar.empty()) input("tfar", rays.tfar);
-    if (!rays.spawn_offset.empty()) input("spawn_offset", rays.spawn_offset);
-    if (!rays.mask.empty()) input("mask", rays.mask);
-  }
-  template <class T, int N>
-  void output(const char* name, const VectorView<T, N>& view) {
-    if (!is_wanted(view)) return;
-    checks_.add(name, view);
-    has_output_ = true;
-  }
-  Status status() const {
-    if (rays_ == 0) return {};
-    if (!error_.ok()) return error_;
-    if (Status status = checks_.status(); !status.ok()) return status;
-    return has_output_ ? Status() : Status(StatusCode::invalid_argument, "no output is requested");
-  }
-
- private:
-  std::size_t rays_;
-  ViewChecks checks_;
-  Status error_;
-  bool has_output_ = false;
-};
 
 /// Runs call(batch, rays) for rays whose views are valid.
 template <class T, class Call>
@@ -172,7 +133,7 @@ Status closest_of(const RayScene& scene, const RayViews<T>& rays, const HitViews
                   const Execution& execution) {
   return guarded([&] {
     BatchChecks checks(rays.direction.size);
-    checks.add(rays);
+    add_rays(rays, checks);
     for_each_output(hits, [&](const char* name, const auto& view) { checks.output(name, view); });
     return run(rays, options, checks, [&](const RayBatch& batch, std::size_t count) {
       return impl_of(scene).closest(batch, HitArrays<U>(hits), count, execution);
@@ -185,7 +146,7 @@ Status occluded_of(const RayScene& scene, const RayViews<T>& rays, const View1<s
                    const BatchOptions& options, const Execution& execution) {
   return guarded([&] {
     BatchChecks checks(rays.direction.size);
-    checks.add(rays);
+    add_rays(rays, checks);
     checks.output("occluded", occluded);
     return run(rays, options, checks, [&](const RayBatch& batch, std::size_t count) {
       return impl_of(scene).occluded(batch, occluded, count, execution);
