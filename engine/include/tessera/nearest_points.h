@@ -66,7 +66,7 @@ struct SurfacePlaces {
 /// derivatives prove that the distance is convex or monotone, then Newton's method finds its one minimum; other pieces
 /// are halved. Where loops cut a face, the curves that bound the kept part are searched as well.
 ///
-/// Memory: the set must outlive the scene, unless the scene keeps it; it may be moved. About 320 bytes per piece. After
+/// Memory: the set must outlive the scene, unless the scene keeps it; it may be moved. About 340 bytes per piece. After
 /// an edit of the set the scene is stale until refit(), and its queries fail.
 ///
 /// Threads: const calls from any number of threads, with the same results; edits of the set and refit exclude them.

@@ -9,8 +9,7 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// Rounding of a distance, in the scene's coordinates, and relative to it.
-constexpr double slack = 0x1p-47, relative_slack = 0x1p-50;
+constexpr double relative_slack = 0x1p-50;  // rounding of a distance by that of differences, relative to it
 /// How far apart two places are that count as several nearest points, in the scene's coordinates.
 constexpr double min_apart = 1e-6;
 constexpr std::size_t max_stack = 256;
@@ -26,7 +25,7 @@ void NearestSearch::start(const Vec3& point, double max_distance) {
   point_ = point - frame.centre;
   scene_point_ = frame.scale * point_;
   outcome_ = {};
-  outcome_.slack = (slack + relative_slack * length(scene_point_)) / frame.scale;
+  outcome_.slack = (2 * pieces_.rounding() + relative_slack * length(scene_point_)) / frame.scale;
   outcome_.best.distance = max_distance;
   tie_count_ = 0;
   reach_ = (max_distance + outcome_.slack) * frame.scale;

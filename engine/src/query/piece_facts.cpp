@@ -69,7 +69,6 @@ struct HomogeneousRange {
 /// Bounds the derivative of an order with du + dv = 1 or 2, rounding included: a coordinate of a frame's point is off
 /// by 2^-49 at most, since coordinates and weights are at most 2.
 HomogeneousRange derivative_range(const FrameNet& net, int du, int dv) {
-  constexpr double point_rounding = 0x1p-49;
   const int m = net.degree_u, n = net.degree_v;
   HomogeneousRange out;
   if (du > m || dv > n) return {{{0, 0}, {0, 0}, {0, 0}}, {0, 0}};
@@ -89,7 +88,7 @@ HomogeneousRange derivative_range(const FrameNet& net, int du, int dv) {
   };
   out.point = {range(net.points[0]), range(net.points[1]), range(net.points[2])};
   out.weight = net.is_rational ? range(net.weights) : Range{0, 0};
-  const double margin = point_rounding * (1 << (du + dv));
+  const double margin = net_rounding(m, n) * (1 << (du + dv));
   out.point.x = scale * out.point.x.widened(margin), out.point.y = scale * out.point.y.widened(margin);
   out.point.z = scale * out.point.z.widened(margin);
   if (net.is_rational) out.weight = scale * out.weight.widened(margin);
@@ -184,7 +183,7 @@ PieceBounds bound_piece(const PieceNet& net) {
   const Frame frame = frame_of(middle, is_regular);
   const FrameNet local(net, frame);
   const VectorRange hull = hull_of(local), space = hull_of(world);
-  constexpr double margin = 0x1p-48;  // for the rounding of points
+  const double margin = net_rounding(net.degree_u, net.degree_v);
   PieceBounds out;
   PieceFacts<double>& f = out.facts;
   f.centre = Vec3Of<double>(middle.position);

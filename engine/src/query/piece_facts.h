@@ -69,6 +69,10 @@ struct PieceNet {
   const double* values;
 };
 
+/// Bounds the rounding of a coordinate of a part's net or of a point, for coordinates and weights of at most 2: each
+/// level of de Casteljau's algorithm rounds twice, a part takes two passes along each parameter.
+inline double net_rounding(int degree_u, int degree_v) { return (degree_u + degree_v + 4) * 0x1p-51; }
+
 struct PieceBounds {
   PieceFacts<double> facts;
   PieceBox box;

@@ -130,6 +130,11 @@ Status QueryPieces::build(const SetView& set, const SceneFrame& frame, const Exe
   if (boxes.size() >= std::size_t{1} << 31)
     return Status(StatusCode::unsupported, "more than 2^31 pieces of patches and curves");
   tree_.build(boxes);
+  rounding_ = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const BezierPatch& patch = set.patch(k);
+    rounding_ = std::max(rounding_, net_rounding(patch.degree_u(), patch.degree_v()));
+  }
   return {};
 }
 

@@ -40,6 +40,8 @@ class QueryPieces {
   std::span<const QueryPiece> pieces() const { return pieces_; }
   std::span<const KeptCurve> curves() const { return curves_; }
   const PatchRegions& regions() const { return regions_; }
+  /// Bounds the rounding of a point of any patch, in the scene's coordinates.
+  double rounding() const { return rounding_; }
   std::size_t memory_bytes() const;
 
  private:
@@ -54,6 +56,7 @@ class QueryPieces {
   std::vector<std::uint32_t> first_piece_, first_curve_;  ///< `[patch]`, and the ends
   PatchRegions regions_;
   QueryTree tree_;
+  double rounding_ = 0;
 };
 
 }}  // namespace tessera::abi_0_1
