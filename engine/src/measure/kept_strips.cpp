@@ -7,13 +7,6 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// The interval between lines that contains x.
-std::size_t interval_of(std::span<const double> lines, double x) {
-  const auto above = std::ranges::upper_bound(lines, x);
-  const auto k = static_cast<std::size_t>(above - lines.begin());
-  return std::clamp<std::size_t>(k, 1, lines.size() - 1) - 1;
-}
-
 /// Makes the strips of one row of patches, from the last to the first. In a row, the region is kept at a point where
 /// the signs of the pieces on its right add up to 1 (with one more if points that no piece encloses are kept).
 class RowStrips {

@@ -3,12 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "tessera/geometry.h"
 
 namespace tessera { inline namespace abi_0_1 {
+
+/// Returns the interval between increasing lines, at least two, that holds x. A line belongs to the interval after it;
+/// beyond the lines it is the nearest interval.
+inline std::size_t interval_of(std::span<const double> lines, double x) {
+  const auto above = std::ranges::upper_bound(lines, x) - lines.begin();
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(lines) - 2));
+}
 
 /// The lines of one direction, strictly increasing, at least two: the first and the last are sides of the domain.
 struct CutAxis {

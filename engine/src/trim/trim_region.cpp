@@ -63,12 +63,6 @@ CutAxis axis_of(std::span<const double> breaks, bool periodic, double snap) {
   return axis;
 }
 
-/// The interval that holds x, which lies within the lines.
-std::size_t interval(const std::vector<double>& lines, double x) {
-  const auto above = std::upper_bound(lines.begin(), lines.end(), x) - lines.begin();
-  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(lines) - 2));
-}
-
 /// Lists the pieces that cut each patch.
 void list_cutting(TrimRegion::Impl& region) {
   const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
@@ -78,8 +72,8 @@ void list_cutting(TrimRegion::Impl& region) {
     const bool along_u = piece.start().v == piece.end().v && region.lines.v.is_line(piece.start().v);
     const bool along_v = piece.start().u == piece.end().u && region.lines.u.is_line(piece.start().u);
     if (along_u || along_v) continue;
-    const std::size_t a = interval(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
-    const std::size_t b = interval(v, 0.5 * piece.lower_v() + 0.5 * piece.upper_v());
+    const std::size_t a = interval_of(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
+    const std::size_t b = interval_of(v, 0.5 * piece.lower_v() + 0.5 * piece.upper_v());
     cuts.emplace_back(a * region.count_v() + b, k);
   }
   std::ranges::sort(cuts);
@@ -101,13 +95,13 @@ void sort_patches(TrimRegion::Impl& region) {
   for (const TrimPiece& piece : region.pieces) {
     const double lower = piece.lower_v(), upper = piece.upper_v();
     if (lower == upper) continue;
-    const std::size_t b = interval(v, 0.5 * lower + 0.5 * upper);
+    const std::size_t b = interval_of(v, 0.5 * lower + 0.5 * upper);
     const double middle = 0.5 * v[b] + 0.5 * v[b + 1];
     if (!(lower <= middle && middle < upper)) continue;
     const bool is_on_line = piece.start().u == piece.end().u && region.lines.u.is_line(piece.start().u);
     const std::size_t a = is_on_line
                               ? static_cast<std::size_t>(std::ranges::lower_bound(u, piece.start().u) - u.begin())
-                              : interval(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
+                              : interval_of(u, 0.5 * piece.lower_u() + 0.5 * piece.upper_u());
     crossed[a * count_v + b] ^= 1;
   }
   region.patches.resize(count_u * count_v);

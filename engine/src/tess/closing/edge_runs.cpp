@@ -100,11 +100,6 @@ double same_share(const PatchSet::Impl& set, double tolerance) {
   return std::clamp(0.05 * tolerance / set.model_box().diagonal(), least_same_share, largest_same_share);
 }
 
-std::size_t cell_of(std::span<const double> lines, double value) {
-  const auto above = std::ranges::upper_bound(lines, value);
-  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - lines.begin() - 1, 0, std::ssize(lines) - 2));
-}
-
 double parameter_at(std::span<const TrimPiece> pieces, Side side, double place) {
   const bool grows = along_side(side, pieces.front().start()) < along_side(side, pieces.back().end());
   const auto piece = std::ranges::partition_point(pieces.first(pieces.size() - 1), [&](const TrimPiece& of) {
@@ -167,8 +162,8 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
     if (line) {
       find_side(run, *line, sides);
     } else {
-      const std::size_t a = cell_of(region.lines.u.lines, (at.start().u + at.end().u) / 2);
-      run.patch = of.patches[a * region.count_v() + cell_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
+      const std::size_t a = interval_of(region.lines.u.lines, (at.start().u + at.end().u) / 2);
+      run.patch = of.patches[a * region.count_v() + interval_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
     }
     const bool is_cut = set.trims && run.patch != no_id && set.trims->is_cut[run.patch];
     if (run.is_side ? run.patch != no_id : is_cut) (coedge ? runs_ : gaps_).push_back(run);
@@ -185,7 +180,7 @@ void EdgeRuns::find_side(EdgeRun& run, Side low, std::optional<FaceSides>& sides
   const double middle = (along_side(low, at.start()) + along_side(low, region.pieces[run.end - 1].end())) / 2;
   const double value = across_side(low, at.start());
   const auto line = static_cast<std::size_t>(std::ranges::lower_bound(across, value) - across.begin());
-  const std::size_t cell = cell_of(along, middle);
+  const std::size_t cell = interval_of(along, middle);
   const auto patch_at = [&](std::size_t strip) {
     if (strip + 1 >= across.size()) return no_id;
     return face.patches[runs_along_u(low) ? cell * region.count_v() + strip : strip * region.count_v() + cell];

@@ -100,8 +100,6 @@ class EdgeRuns {
 inline std::pair<double, double> ends_along(Side side, std::span<const TrimPiece> pieces) {
   return std::minmax({along_side(side, pieces.front().start()), along_side(side, pieces.back().end())});
 }
-/// Returns the cell of growing lines in which a value lies.
-std::size_t cell_of(std::span<const double> lines, double value);
 /// Returns the parameter of the caller's curve where pieces that follow each other have a place along a side.
 double parameter_at(std::span<const TrimPiece> pieces, Side side, double place);
 /// Returns the point of pieces that follow each other at a parameter of the caller's curve, within the piece's box.

@@ -168,7 +168,7 @@ void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uin
   const bool before = (on_u ? local.u : local.v) == 0;
   const Side side = on_u ? (before ? Side::u0 : Side::u1) : (before ? Side::v0 : Side::v1);
   const TrimRegion::Impl& region = impl_of(face.region);
-  std::size_t a = cell_of(region.lines.u.lines, domain.u0), b = cell_of(region.lines.v.lines, domain.v0);
+  std::size_t a = interval_of(region.lines.u.lines, domain.u0), b = interval_of(region.lines.v.lines, domain.v0);
   if (before && (on_u ? a : b) == 0) return;
   if (on_u)
     before ? --a : ++a;
