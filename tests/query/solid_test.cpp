@@ -9,7 +9,9 @@
 #include "support/random_patches.h"
 #include "support/ray_classes.h"
 #include "support/torus.h"
+#include "tessera/edge_matching.h"
 #include "tessera/model.h"
+#include "tessera/nurbs_surface.h"
 #include "tessera/solid.h"
 
 namespace tessera::test { namespace {
@@ -43,10 +45,11 @@ std::vector<BezierPatch> box(const Vec3& from, const Vec3& to) {
 }
 
 template <class Inside>
-void expect_sides(const Solid& solid, std::size_t count, double reach, double near, const Inside& depth) {
+void expect_sides(const Solid& solid, std::size_t count, double reach, double near, const Inside& depth,
+                  const Vec3& about = {}) {
   Random random(1);
   std::vector<Vec3> points;
-  for (std::size_t k = 0; k < count; ++k) points.push_back(reach * uniform_vector(random, -1, 1));
+  for (std::size_t k = 0; k < count; ++k) points.push_back(about + reach * uniform_vector(random, -1, 1));
   std::vector<Containment> sides(count);
   ASSERT_TRUE(solid.contains(points, sides).ok());
   std::size_t certified = 0, inside = 0;
@@ -111,6 +114,42 @@ TEST(SolidPoints, OfShellsThatTouchOrLieWithinEachOther) {
   expect_sides(hollow.solid, 5000, 1.2, 1e-13, [](const Vec3& p) {
     return std::min(1 - length(p), length(p - Vec3{0.2, 0, 0}) - 0.5);
   });
+}
+
+/// A loop around [x0, x1] x [0, y1] in the plane.
+TrimLoop rectangle_loop(double x0, double x1, double y1) {
+  const auto line = [](const Vec3& a, const Vec3& b) { return value_of(Curve::bezier(std::vector<Vec3>{a, b})); };
+  return {{line({x0, 0, 0}, {x1, 0, 0}), line({x1, 0, 0}, {x1, y1, 0}), line({x1, y1, 0}, {x0, y1, 0}),
+           line({x0, y1, 0}, {x0, 0, 0})},
+          false};
+}
+
+// One face is the bottom of a block and the top of another: it faces outwards to both sides.
+TEST(SolidPoints, OfAFaceInTwoPieces) {
+  std::vector<ModelSurface> faces;
+  const auto add = [&](std::vector<BezierPatch> block, std::size_t without) {
+    block.erase(block.begin() + static_cast<std::ptrdiff_t>(without));
+    for (const BezierPatch& patch : block) faces.push_back({.name = std::string("side"), .surface = patch});
+  };
+  add(box({0, 0, 0}, {1, 1, 1}), 0);
+  add(box({2, 0, -0.2}, {2.2, 0.2, 0}), 1);
+  ModelSurface plane{.name = std::string("plane"),
+                     .surface = value_of(BSplineSurface::polynomial(
+                         1, std::vector<double>{-1, -1, 4, 4}, 1, std::vector<double>{-1, -1, 4, 4},
+                         std::vector<Vec3>{{-1, -1, 0}, {-1, 4, 0}, {4, -1, 0}, {4, 4, 0}}))};
+  plane.trims = std::vector<TrimLoop>{rectangle_loop(0, 1, 1), rectangle_loop(2, 2.2, 0.2)};
+  faces.push_back(plane);
+  const PatchSet set = value_of(make_patch_set(value_of(joined_shape(faces, 1e-6))));
+  const RayScene scene = value_of(RayScene::make(set));
+  const Solid solid = value_of(Solid::make(scene));
+  EXPECT_TRUE(solid.is_closed());
+  const auto depth = [](const Vec3& p) {
+    const double above = std::min({p.x, 1 - p.x, p.y, 1 - p.y, p.z, 1 - p.z});
+    const double below = std::min({p.x - 2, 2.2 - p.x, p.y, 0.2 - p.y, -p.z, p.z + 0.2});
+    return std::max(above, below);
+  };
+  expect_sides(solid, 5000, 1, 1e-12, depth, {0.5, 0.5, 0.5});
+  expect_sides(solid, 5000, 0.2, 1e-12, depth, {2.1, 0.1, -0.1});
 }
 
 TEST(SolidPoints, OfOpenSurfacesAreNotCertified) {

@@ -11,11 +11,14 @@
 #include "base/impl_access.h"
 #include "base/infinity.h"
 #include "base/text.h"
+#include "block/patch_edges.h"
 #include "parallel/parallel_for.h"
 #include "query/set_shells.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "tessera/curve.h"
 #include "tessera/guard.h"
+#include "trim/trim_region_impl.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -57,6 +60,8 @@ class Solid::Impl {
   const SetView& set() const { return *source_->tracer().set; }
   Facing facing_at(std::uint32_t patch, double u, double v) const;
   Facing facing_of(std::span<const std::uint32_t> patches) const;
+  Facing facing_beside(const PatchEdges::Face& face, const TrimLoop& loop) const;
+  void check_islands(const PatchEdges::Face& face);
   bool side_of(const Hit& hit, const Ray& ray, PointSide& side) const;
   Status count(const Ray& ray, bool& is_odd, bool& is_sure) const;
   Status settle(const Vec3& point, Containment& out) const;
@@ -113,6 +118,40 @@ Solid::Impl::Facing Solid::Impl::facing_of(std::span<const std::uint32_t> patche
   return count > 0 && std::abs(votes) == count ? static_cast<Facing>(votes / count) : unsure;
 }
 
+/// Tells which way the normal points on the kept side of a loop.
+Solid::Impl::Facing Solid::Impl::facing_beside(const PatchEdges::Face& face, const TrimLoop& loop) const {
+  constexpr std::size_t max_curves = 8;
+  const CutLines& lines = impl_of(face.region).lines;
+  for (std::size_t k = 0; k < std::min(loop.curves.size(), max_curves); ++k) {
+    const Curve& curve = loop.curves[k];
+    const Interval range = curve.domain();
+    const Vec3 middle = position(curve, 0.5 * (range.from + range.to));
+    const Vec3 chord = position(curve, 0.55 * range.from + 0.45 * range.to) - middle;
+    for (const double aside : {0.1, -0.1, 0.001, -0.001}) {
+      const double u = middle.x - aside * chord.y, v = middle.y + aside * chord.x;
+      if (!impl_of(face.region).domain.contains(u, v)) continue;
+      const std::uint32_t patch =
+          face.patches[interval_of(lines.u.lines, u) * (lines.v.lines.size() - 1) + interval_of(lines.v.lines, v)];
+      if (patch == no_id) continue;
+      const Domain& domain = set().source(patch).domain;
+      const ParameterPoint at{domain.local_u(u), domain.local_v(v)};
+      if (!source_->tracer().trims->keeps_point(patch, at.u, at.v)) continue;
+      if (const Facing facing = facing_at(patch, at.u, at.v); facing != unsure) return facing;
+    }
+  }
+  return unsure;
+}
+
+/// A face that loops cut into several parts may face outwards to another side in each. Each part has a loop, so that the
+/// kept sides of all loops show them all.
+void Solid::Impl::check_islands(const PatchEdges::Face& face) {
+  const auto patch = std::ranges::find_if(face.patches, [](std::uint32_t k) { return k != no_id; });
+  if (patch == face.patches.end() || face.loops->size() < 2 || source_->tracer().trims == nullptr) return;
+  std::int8_t& facing = facing_[set().source(*patch).surface];
+  for (const TrimLoop& loop : *face.loops)
+    if (facing != unsure && facing_beside(face, loop) != facing) facing = unsure;
+}
+
 Status Solid::Impl::make(const Execution& execution) {
   if (source_ == nullptr || source_->tracer().patches != set().patch_count())
     return {StatusCode::unsupported, "a solid needs a ray scene of all patches of a set, in exact mode"};
@@ -128,9 +167,16 @@ Status Solid::Impl::make(const Execution& execution) {
   // Where shells touch, the first hit may be that of either, so that all hits have to be counted.
   faces_tell_ = shells.open_borders == 0 && shells.count == 1;
   if (!faces_tell_) return {};
-  return parallel_for(patches.size(), surfaces_per_task, execution, [&](std::size_t begin, std::size_t end) {
+  const auto face_all = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       if (!patches[k].empty()) facing_[k] = facing_of(patches[k]);
+  };
+  Status status = parallel_for(patches.size(), surfaces_per_task, execution, face_all);
+  const PatchEdges* const edges = set().impl().edges.get();
+  if (!status.ok() || edges == nullptr) return status;
+  const Execution quiet{.cancel = execution.cancel};
+  return parallel_for(edges->faces.size(), surfaces_per_task, quiet, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) check_islands(edges->faces[k]);
   });
 }
 
