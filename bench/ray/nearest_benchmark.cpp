@@ -1,5 +1,5 @@
-// Nearest points of a bicubic spline, for points near it and anywhere in its box, and which points lie inside of a body
-// beside closest hits of as many rays. Each case checks that its results are proven.
+// Nearest points of a bicubic spline, for points near it and anywhere in its box, parameters of points on it, and which
+// points lie inside of a body beside closest hits of as many rays. Each case checks that its results are proven.
 
 #include <benchmark/benchmark.h>
 
@@ -19,7 +19,7 @@
 
 namespace tessera::bench { namespace {
 
-constexpr std::size_t point_count = 20000;
+constexpr std::size_t point_count = 20000, many_points = 200000;
 
 /// A spline of side x side bicubic patches of size 1 with waves of height 0.5, without creases.
 PatchSet waves(int side) {
@@ -37,11 +37,11 @@ PatchSet waves(int side) {
 }
 
 /// Points within 1% of a patch's length of the surface, or anywhere in its box.
-std::vector<Vec3> points_at(const PatchSet& set, bool near) {
+std::vector<Vec3> points_at(const PatchSet& set, std::size_t count, bool near) {
   test::Random random(1);
   const Box3 box = set.box();
   std::vector<Vec3> points;
-  for (std::size_t k = 0; k < point_count; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     if (near) {
       const auto patch = static_cast<std::uint32_t>(random() % set.patch_count());
       const SurfaceJet jet = evaluate_jet(set.patch(patch), test::uniform(random, 0, 1), test::uniform(random, 0, 1));
@@ -55,10 +55,10 @@ std::vector<Vec3> points_at(const PatchSet& set, bool near) {
   return points;
 }
 
-void nearest_points(benchmark::State& state, int side, bool near) {
+void nearest_points(benchmark::State& state, int side, std::size_t count, bool near) {
   const PatchSet set = waves(side);
   const PointScene scene = test::value_of(PointScene::make(set));
-  const std::vector<Vec3> points = points_at(set, near);
+  const std::vector<Vec3> points = points_at(set, count, near);
   std::vector<NearestPoint> found(points.size());
   const auto best = time_calls(state, 1, [&] { return scene.nearest(points, found); });
   if (!best) return;
@@ -69,11 +69,29 @@ void nearest_points(benchmark::State& state, int side, bool near) {
   state.counters["bytes_a_patch"] = double(scene.memory_bytes()) / double(set.patch_count());
 }
 
+/// Points on the surface, to their parameters.
+void places_of_points(benchmark::State& state, int side, std::size_t count) {
+  const PatchSet set = waves(side);
+  const PointScene scene = test::value_of(PointScene::make(set));
+  std::vector<Vec3> points = points_at(set, count, true);
+  std::vector<NearestPoint> nearest(points.size());
+  if (!scene.nearest(points, nearest).ok()) return state.SkipWithError("no nearest points");
+  for (std::size_t k = 0; k < points.size(); ++k) points[k] = nearest[k].position;
+  constexpr double distance = 1e-9;
+  SurfacePlaces found;
+  const auto best = time_calls(state, 1, [&] { return scene.places(points, distance, found); });
+  if (!best) return;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (found.first[k] == found.first[k + 1] || length(found.places[found.first[k]].position - points[k]) > distance)
+      return state.SkipWithError("a point of the surface is not found there");
+  state.counters["ns_a_point"] = 1e9 * *best / double(points.size());
+}
+
 void contained_points(benchmark::State& state) {
   const PatchSet set = test::value_of(PatchSet::make(test::Torus(12).patches(false)));
   const RayScene scene = test::value_of(RayScene::make(set));
   const Solid solid = test::value_of(Solid::make(scene));
-  const std::vector<Vec3> points = points_at(set, false);
+  const std::vector<Vec3> points = points_at(set, point_count, false);
   std::vector<Containment> sides(points.size());
   std::vector<Hit> hits(points.size());
   std::vector<Ray> rays;
@@ -94,12 +112,17 @@ void contained_points(benchmark::State& state) {
 }
 
 const bool registered = [] {
-  for (const int side : {60, 316})
+  for (const int side : {60, 316}) {
+    const std::size_t count = side == 60 ? point_count : many_points;
     for (const bool near : {true, false})
-      add_case({near ? "nearest.near" : "nearest.box", "waves" + std::to_string(side * side), "3",
-                std::to_string(point_count)},
-               side == 60 ? Part::quick : Part::full,
-               [=](benchmark::State& state) { nearest_points(state, side, near); });
+      add_case(
+          {near ? "nearest.near" : "nearest.box", "waves" + std::to_string(side * side), "3", std::to_string(count)},
+          side == 60 ? Part::quick : Part::full,
+          [=](benchmark::State& state) { nearest_points(state, side, count, near); });
+    add_case({"nearest.places", "waves" + std::to_string(side * side), "3", std::to_string(count)},
+             side == 60 ? Part::quick : Part::full,
+             [=](benchmark::State& state) { places_of_points(state, side, count); });
+  }
   add_case({"solid.contains", "torus", "3", std::to_string(point_count)}, Part::quick, contained_points);
   return true;
 }();

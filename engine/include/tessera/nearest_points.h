@@ -64,7 +64,8 @@ struct SurfacePlaces {
 ///
 /// Method: patches are cut into pieces that are nearly flat, which lie in a tree of boxes. Within a piece, bounds of
 /// derivatives prove that the distance is convex or monotone, then Newton's method finds its one minimum; other pieces
-/// are halved. Where loops cut a face, the curves that bound the kept part are searched as well.
+/// are halved. Where loops cut a face, the curves that bound the kept part are searched as well. Kernels of
+/// default_isa() measure boxes and evaluate bicubic patches.
 ///
 /// Memory: the set must outlive the scene, unless the scene keeps it; it may be moved. About 340 bytes per piece. After
 /// an edit of the set the scene is stale until refit(), and its queries fail.
@@ -74,8 +75,8 @@ class PointScene {
  public:
   /// Makes the pieces and the tree of a set.
   ///
-  /// Errors: unsupported (the box of the set has a diagonal outside of 1e-140 to 1e140; 2^31 pieces), cancelled,
-  /// out_of_memory.
+  /// Errors: unsupported (the box of the set has a diagonal outside of 1e-140 to 1e140; 2^31 pieces), isa_unavailable,
+  /// cancelled, out_of_memory.
   static Result<PointScene> make(const PatchSet& set, const Execution& execution = {});
   /// Makes a scene that keeps the set itself. Errors: as above.
   static Result<PointScene> make(PatchSet&& set, const Execution& execution = {});

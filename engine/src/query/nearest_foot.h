@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "query/second_order.h"
-#include "tessera/bezier_patch.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -26,7 +25,7 @@ struct Foot {
 /// Finds the nearest point of a part from a start. `point`: relative to the origin. `limit`: feet that are proven to be
 /// farther are of no use; the proof takes the squared distance for convex over the part. `rounding`: of points.
 /// `max_steps`: of Newton's method.
-Foot nearest_foot(const BezierPatch& patch, const Vec3& origin, const Vec3& point, const PatchPart& part, double u,
-                  double v, double limit, double rounding, int max_steps = 24);
+Foot nearest_foot(const SecondOrderPatch& patch, const Vec3& point, const PatchPart& part, double u, double v,
+                  double limit, double rounding, int max_steps = 24);
 
 }}  // namespace tessera::abi_0_1

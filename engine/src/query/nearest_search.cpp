@@ -31,17 +31,17 @@ void NearestSearch::start(const Vec3& point, double max_distance) {
   reach_ = (max_distance + outcome_.slack) * frame.scale;
 }
 
-void NearestSearch::search() {
+void NearestSearch::search(QueryTree::Path& path) {
   deferred_.clear();
-  pieces_.tree().visit_near(scene_point_, *this);
+  pieces_.tree().visit_near(path, *this);
   for (const Deferred& one : deferred_)
     if (one.lower <= reach_ && !branch(*one.piece, max_parts)) outcome_.complete = false;
 }
 
-NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance) {
-  places_ = nullptr;
+NearestSearch::Outcome NearestSearch::run(QueryTree::Path& path, const Vec3& point, double max_distance) {
+  finds_all_ = false;
   start(point, max_distance);
-  search();
+  search(path);
   polish(outcome_.best);
   const double limit = outcome_.best.distance + outcome_.slack, scale = pieces_.frame().scale;
   for (std::size_t k = 0; k < tie_count_; ++k)
@@ -50,20 +50,18 @@ NearestSearch::Outcome NearestSearch::run(const Vec3& point, double max_distance
   return outcome_;
 }
 
-NearestSearch::Outcome NearestSearch::run_all(const Vec3& point, double distance, std::vector<NearCandidate>& places) {
-  places_ = &places;
-  first_place_ = places.size();
+NearestSearch::Outcome NearestSearch::run_all(QueryTree::Path& path, const Vec3& point, double distance) {
+  finds_all_ = true;
+  places_.clear();
   start(point, distance);
-  search();
-  std::vector<NearCandidate> found(places.begin() + static_cast<std::ptrdiff_t>(first_place_), places.end());
-  places.resize(first_place_);
-  for (NearCandidate& one : found) {
+  search(path);
+  std::swap(found_places_, places_);
+  places_.clear();
+  for (NearCandidate& one : found_places_) {
     polish(one);
     add_place(one);
   }
-  std::ranges::sort(places.begin() + static_cast<std::ptrdiff_t>(first_place_), places.end(), {},
-                    [](const NearCandidate& a) { return std::tuple(a.patch, a.u, a.v); });
-  places_ = nullptr;
+  std::ranges::sort(places_, {}, [](const NearCandidate& a) { return std::tuple(a.patch, a.u, a.v); });
   return outcome_;
 }
 
@@ -71,8 +69,8 @@ NearestSearch::Outcome NearestSearch::run_all(const Vec3& point, double distance
 /// as near up to rounding, but off to the side by the root of that.
 void NearestSearch::polish(NearCandidate& candidate) const {
   if (candidate.patch == no_id || candidate.is_on_curve || (candidate.is_exact && !candidate.on_border)) return;
-  const Foot foot = nearest_foot(set_.patch(candidate.patch), pieces_.frame().centre, point_, {0, 1, 0, 1}, candidate.u,
-                                 candidate.v, infinity, outcome_.slack);
+  const Foot foot =
+      nearest_foot(ground(candidate.patch), point_, {0, 1, 0, 1}, candidate.u, candidate.v, infinity, outcome_.slack);
   const bool is_cut = pieces_.regions().any() && pieces_.regions().is_cut(candidate.patch);
   if (!foot.converged || foot.distance > candidate.distance + outcome_.slack) return;
   if (is_cut && !is_kept(candidate.patch, foot.u, foot.v)) return;
@@ -94,14 +92,13 @@ bool NearestSearch::is_same_place(const NearCandidate& a, const NearCandidate& b
 
 /// Keeps a place, or the nearer one of two that are the same.
 void NearestSearch::add_place(const NearCandidate& candidate) {
-  for (std::size_t k = first_place_; k < places_->size(); ++k) {
-    NearCandidate& known = (*places_)[k];
+  for (NearCandidate& known : places_) {
     if (!is_same_place(known, candidate)) continue;
     const auto order = [](const NearCandidate& a) { return std::tuple(a.on_border, a.distance, a.u, a.v); };
     if (order(candidate) < order(known)) known = candidate;
     return;
   }
-  places_->push_back(candidate);
+  places_.push_back(candidate);
 }
 
 bool NearestSearch::visit(std::uint32_t item, double distance) {
@@ -150,7 +147,7 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   const double x = has_u && has_v ? (p - c * q) / det : p, y = has_u && has_v ? (q - c * p) / det : q;
   const double u = 0.5 + x / double(facts.length_u), v = 0.5 + y / double(facts.length_v);
   const Foot foot =
-      nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, part, area.u0 + u * (area.u1 - area.u0),
+      nearest_foot(ground(piece.patch), point_, part, area.u0 + u * (area.u1 - area.u0),
                    area.v0 + v * (area.v1 - area.v0), outcome_.best.distance + outcome_.slack, outcome_.slack);
   if (foot.is_farther) return true;
   offer(piece, foot);
@@ -171,12 +168,12 @@ bool NearestSearch::branch(const QueryPiece& piece, int parts) {
     const PatchPart& area = part.area;
     const double middle_u = 0.5 * (area.u0 + area.u1), middle_v = 0.5 * (area.v0 + area.v1);
     constexpr int few_steps = 3;  // towards a good limit: where the part's nearest point lies is not clear
-    offer(piece, nearest_foot(set_.patch(piece.patch), pieces_.frame().centre, point_, area, middle_u, middle_v,
-                              infinity, outcome_.slack, few_steps));
+    offer(piece,
+          nearest_foot(ground(piece.patch), point_, area, middle_u, middle_v, infinity, outcome_.slack, few_steps));
     // All points of the part are as near, up to rounding, as the nearest one, or as each other.
     const double rounding = outcome_.slack * scale, near = outcome_.best.distance * scale;
-    const double point_size = places_ ? std::max(4 * rounding, near) : 4 * rounding;
-    if (part.lower >= near - (places_ ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
+    const double point_size = finds_all_ ? std::max(4 * rounding, near) : 4 * rounding;
+    if (part.lower >= near - (finds_all_ ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
     if (++outcome_.parts >= limit || stack_.size() + 2 > max_stack) return false;
     const auto [lower, upper] = halves(area, part.bounds.facts);
     push(piece, lower), push(piece, upper);
@@ -231,7 +228,7 @@ void NearestSearch::offer(const QueryPiece& piece, const Foot& foot) {
 void NearestSearch::offer(const NearCandidate& candidate) {
   NearCandidate& best = outcome_.best;
   if (!(candidate.distance <= best.distance + outcome_.slack)) return;
-  if (places_) return add_place(candidate);
+  if (finds_all_) return add_place(candidate);
   const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
   const double digits = 0.125 * outcome_.slack;
   const bool is_as_near = best.patch != no_id && std::abs(candidate.distance - best.distance) <= digits;

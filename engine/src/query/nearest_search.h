@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -37,11 +38,14 @@ class NearestSearch {
     double slack = 0;  ///< rounding, in the model's unit
     int parts = 0;     ///< the work: pieces, curves and parts of them
   };
-  /// `point`: finite. `max_distance`: at least 0, perhaps infinite.
-  Outcome run(const Vec3& point, double max_distance);
+  /// `path`: that of a finite point in the scene's coordinates, begun in the pieces' tree, and used up. `point`: the
+  /// same in the model's. `max_distance`: at least 0, perhaps infinite.
+  Outcome run(QueryTree::Path& path, const Vec3& point, double max_distance);
   /// Finds all places of patches within a distance, each once: places of one patch count as one if they are nearer to
-  /// each other than four times that. Appends them by patches and parameters; `best` stays empty.
-  Outcome run_all(const Vec3& point, double distance, std::vector<NearCandidate>& places);
+  /// each other than four times that. `best` stays empty.
+  Outcome run_all(QueryTree::Path& path, const Vec3& point, double distance);
+  /// Returns what run_all() has found, by patches and parameters.
+  std::span<const NearCandidate> places() const { return places_; }
 
   /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
   /// search ends before.
@@ -59,10 +63,13 @@ class NearestSearch {
   };
 
   double reach() const { return reach_; }
+  SecondOrderPatch ground(std::uint32_t patch) const {
+    return {&set_.patch(patch), pieces_.frame().centre, &pieces_.kernels().nearest};
+  }
   bool visit(std::uint32_t item, double distance);
   bool branch(const QueryPiece& piece, int parts);
   void start(const Vec3& point, double max_distance);
-  void search();
+  void search(QueryTree::Path& path);
   void polish(NearCandidate& candidate) const;
   void add_place(const NearCandidate& candidate);
   bool is_same_place(const NearCandidate& a, const NearCandidate& b) const;
@@ -90,8 +97,8 @@ class NearestSearch {
   Vec3 scene_point_;  ///< in the scene's coordinates
   double reach_ = 0;  ///< in the scene's coordinates: pieces beyond are of no use
   Outcome outcome_;
-  std::vector<NearCandidate>* places_ = nullptr;  ///< if all are wanted
-  std::size_t first_place_ = 0;                   ///< of this point, in `places_`
+  bool finds_all_ = false;
+  std::vector<NearCandidate> places_, found_places_;  ///< if all are wanted
   static constexpr std::size_t max_ties = 4;
   std::array<NearCandidate, max_ties> ties_;
   std::size_t tie_count_ = 0;

@@ -55,9 +55,9 @@ Status nearest_of(const PointScene& scene, const PointViews<T>& points, const Ne
     if (Status status = impl.check_fresh(); !status.ok()) return status;
     const View3<const T>& p = points.position;
     const auto at = [&](std::size_t k) { return Vec3{p.at(k, 0), p.at(k, 1), p.at(k, 2)}; };
-    return impl.for_points(p.size, execution, at, [&](std::size_t k, NearestSearch& search) {
+    return impl.for_points(p.size, execution, at, [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
       const double reach = points.max_distance.empty() ? infinity : double(points.max_distance.at(k, 0));
-      write(impl.nearest(at(k), reach, search), nearest, k);
+      write(impl.nearest(at(k), reach, search, path), nearest, k);
     });
   });
 }

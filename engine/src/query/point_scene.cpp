@@ -48,7 +48,7 @@ bool PointScene::Impl::is_valid(const Vec3& point) const {
 /// Completes a candidate.
 NearestPoint PointScene::Impl::point_of(const NearCandidate& candidate, const NearestSearch::Outcome& found) const {
   const SceneFrame& frame = pieces_.frame();
-  FirstOrder at = first_order(set_.patch(candidate.patch), candidate.u, candidate.v, frame.centre);
+  FirstOrder at = first_order(set_.patch(candidate.patch), frame.centre, pieces_.kernels(), candidate.u, candidate.v);
   at.position = frame.centre + at.position;
   Hit hit;
   set_surface_point(set_, size_, 1, candidate.patch, candidate.u, candidate.v, at, hit, {.derivatives = false});
@@ -63,25 +63,25 @@ NearestPoint PointScene::Impl::point_of(const NearCandidate& candidate, const Ne
   return out;
 }
 
-NearestPoint PointScene::Impl::nearest(const Vec3& point, double max_distance, NearestSearch& search) const {
+NearestPoint PointScene::Impl::nearest(const Vec3& point, double max_distance, NearestSearch& search,
+                                       QueryTree::Path& path) const {
   NearestPoint out;
   if (!is_valid(point) || !(max_distance >= 0)) {
     out.kind = NearestKind::invalid_point;
     return out;
   }
-  const NearestSearch::Outcome found = search.run(point, max_distance);
+  const NearestSearch::Outcome found = search.run(path, point, max_distance);
   if (found.best.patch != no_id) return point_of(found.best, found);
   out.flags.certified = found.complete;
   out.rounding = found.slack;
   return out;
 }
 
-void PointScene::Impl::append_places(const Vec3& point, double distance, NearestSearch& search,
+void PointScene::Impl::append_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
                                      std::vector<NearestPoint>& places) const {
   if (!is_valid(point)) return;
-  std::vector<NearCandidate> found;
-  const NearestSearch::Outcome outcome = search.run_all(point, distance, found);
-  for (const NearCandidate& one : found) places.push_back(point_of(one, outcome));
+  const NearestSearch::Outcome outcome = search.run_all(path, point, distance);
+  for (const NearCandidate& one : search.places()) places.push_back(point_of(one, outcome));
 }
 
 PointScene::PointScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -122,9 +122,10 @@ Status PointScene::nearest(std::span<const Vec3> points, std::span<NearestPoint>
       return {StatusCode::invalid_argument, "the largest distance must be at least 0, found " + text(max_distance)};
     if (Status status = impl_->check_fresh(); !status.ok()) return status;
     const auto at = [&](std::size_t k) { return points[k]; };
-    return impl_->for_points(points.size(), execution, at, [&](std::size_t k, NearestSearch& search) {
-      nearest[k] = impl_->nearest(points[k], max_distance, search);
-    });
+    return impl_->for_points(points.size(), execution, at,
+                             [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
+                               nearest[k] = impl_->nearest(points[k], max_distance, search, path);
+                             });
   });
 }
 
@@ -145,9 +146,10 @@ Status PointScene::places(std::span<const Vec3> points, double distance, Surface
                                                 text(max_share * impl_->size()) + ", found " + text(distance)};
     std::vector<std::vector<NearestPoint>> found(points.size());
     const auto at = [&](std::size_t k) { return points[k]; };
-    const Status status = impl_->for_points(points.size(), execution, at, [&](std::size_t k, NearestSearch& search) {
-      impl_->append_places(points[k], distance, search, found[k]);
-    });
+    const Status status = impl_->for_points(points.size(), execution, at,
+                                            [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
+                                              impl_->append_places(points[k], distance, search, path, found[k]);
+                                            });
     if (!status.ok()) return status;
     places.first.push_back(0);
     for (const std::vector<NearestPoint>& one : found) {

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "parallel/caller_arena.h"
 #include "parallel/parallel_for.h"
+#include "query/fetch_ahead.h"
 #include "query/nearest_search.h"
 #include "query/query_pieces.h"
 #include "tessera/nearest_points.h"
@@ -25,14 +27,14 @@ class PointScene::Impl {
   /// Errors: stale.
   Status check_fresh() const;
 
-  /// Calls find(k, search) for the points position(k), in tasks; in each, those that lie together one after the other.
+  /// Calls find(k, search, path) for the points position(k), in tasks; in each, those that lie together one after the other.
   /// Errors: cancelled, which is seen between points, because some take long.
   template <class Position, class Find>
   Status for_points(std::size_t count, const Execution& execution, const Position& position, const Find& find) const;
-  /// Finds a nearest point; `search` is of this scene.
-  NearestPoint nearest(const Vec3& point, double max_distance, NearestSearch& search) const;
+  /// Finds a nearest point; `search` and `path` are of this scene.
+  NearestPoint nearest(const Vec3& point, double max_distance, NearestSearch& search, QueryTree::Path& path) const;
   /// Appends all places within a distance.
-  void append_places(const Vec3& point, double distance, NearestSearch& search,
+  void append_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
                      std::vector<NearestPoint>& places) const;
   double size() const { return size_; }
 
@@ -68,21 +70,35 @@ inline std::uint32_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t 
 template <class Position, class Find>
 Status PointScene::Impl::for_points(std::size_t count, const Execution& execution, const Position& position,
                                     const Find& find) const {
-  constexpr std::size_t points_per_task = 1024;
+  // The more points lie together, the more of what they need is in the caches.
+  constexpr std::size_t fewest = 1024, most = 65536, tasks_per_thread = 4;
+  const auto threads = static_cast<std::size_t>(arena_threads());
+  const std::size_t points_per_task = std::clamp(count / (tasks_per_thread * threads), fewest, most);
   constexpr double cells = 1023;
   const SceneFrame& frame = pieces_.frame();
   const auto cell = [](double x) { return static_cast<std::uint32_t>(cells * std::clamp(0.5 + 0.5 * x, 0.0, 1.0)); };
   const auto is_cancelled = [&] { return execution.cancel && execution.cancel->load(std::memory_order_relaxed); };
   const auto find_task = [&](std::size_t begin, std::size_t end) {
     NearestSearch search(set_, pieces_);
-    std::array<std::uint64_t, points_per_task> order;  // the key, and the place
+    FetchAhead ahead(set_, pieces_);
+    std::vector<std::uint64_t> order(end - begin);  // the key, and the place
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3 at = frame.to_scene(position(k));
       const std::uint64_t key = is_finite(at) ? morton_key(cell(at.x), cell(at.y), cell(at.z)) : 0;
       order[k - begin] = key << 32 | (k - begin);
     }
-    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(end - begin));
-    for (std::size_t k = 0; k < end - begin && !is_cancelled(); ++k) find(begin + (order[k] & 0xffffffff), search);
+    const std::size_t size = end - begin;
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(size));
+    const auto place = [&](std::size_t k) { return begin + (order[k] & 0xffffffff); };
+    for (std::size_t k = 0; k < size + FetchAhead::most_ahead && !is_cancelled(); ++k) {
+      if (k < size)
+        ahead.push(k, frame.to_scene(position(place(k))));
+      else
+        ahead.advance(k);
+      if (k < FetchAhead::most_ahead) continue;
+      const std::size_t now = k - FetchAhead::most_ahead;
+      find(place(now), search, ahead.path(now));
+    }
   };
   Status status = parallel_for(count, points_per_task, execution, find_task);
   return status.ok() && is_cancelled() ? Status(StatusCode::cancelled, "cancelled by the caller") : status;

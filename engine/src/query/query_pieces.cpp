@@ -94,6 +94,9 @@ void QueryPieces::make_curves(const SetView& set, std::uint32_t patch, PatchItem
 }
 
 Status QueryPieces::build(const SetView& set, const SceneFrame& frame, const Execution& execution) {
+  const Result<Isa> isa = usable_isa({});
+  if (!isa) return isa.status();
+  kernels_ = &ray_kernels(*isa);
   frame_ = frame;
   if (Status status = regions_.build(set, execution); !status.ok()) return status;
   const std::size_t count = set.patch_count();

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "kernel/table/kernel_table.h"
 #include "query/kept_curve.h"
 #include "query/net_parts.h"
 #include "query/piece_facts.h"
@@ -29,11 +30,12 @@ struct QueryPiece {
 /// Const calls from any number of threads.
 class QueryPieces {
  public:
-  /// Makes pieces, curves and the tree. Errors: cancelled, out_of_memory.
+  /// Makes pieces, curves and the tree. Errors: isa_unavailable, cancelled, out_of_memory.
   Status build(const SetView& set, const SceneFrame& frame, const Execution& execution);
   /// Makes the pieces and curves of these patches anew, cut as they were. Errors: cancelled, out_of_memory.
   Status update(const SetView& set, std::span<const std::uint32_t> patches, const Execution& execution);
 
+  const kernel::RayKernels& kernels() const { return *kernels_; }
   const SceneFrame& frame() const { return frame_; }
   const QueryTree& tree() const { return tree_; }
   /// Items of the tree are first the pieces, then the curves.
@@ -50,6 +52,7 @@ class QueryPieces {
   void make_curves(const SetView& set, std::uint32_t patch, PatchItems& items) const;
   void remake_items(const SetView& set, std::uint32_t patch, QueryTree::Change* change);
 
+  const kernel::RayKernels* kernels_ = nullptr;
   SceneFrame frame_;
   std::vector<QueryPiece> pieces_;
   std::vector<KeptCurve> curves_;

@@ -2,17 +2,30 @@
 // A tree of boxes over pieces, for queries by points: nodes of eight children, and blocks of up to eight pieces with
 // boxes along axes of their own.
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "base/infinity.h"
+#include "kernel/ray/nearest_kernels.h"
 #include "query/piece_facts.h"
 #include "tessera/geometry.h"
 
 namespace tessera { inline namespace abi_0_1 {
+
+/// Asks for memory, so that it is in the caches when it is read.
+inline void fetch(const void* from, std::size_t bytes) {
+  constexpr std::uintptr_t line = 64;
+  const auto begin = reinterpret_cast<std::uintptr_t>(from), end = begin + bytes;
+  for (std::uintptr_t at = begin & ~(line - 1); at < end; at += line)
+    __builtin_prefetch(reinterpret_cast<const void*>(at));
+}
 
 /// The boxes of a tree's item, in a scene's coordinates.
 struct ItemBoxes {
@@ -23,7 +36,7 @@ struct ItemBoxes {
 /// Const calls from any number of threads.
 class QueryTree {
  public:
-  static constexpr std::size_t width = 8;
+  static constexpr std::size_t width = kernel::NodeBoxes::size;
 
   /// Builds the tree over items 0 to items.size() - 1, fewer than 2^31 of them.
   void build(std::span<const ItemBoxes> items);
@@ -33,151 +46,207 @@ class QueryTree {
     ItemBoxes boxes;
   };
   void refit(std::span<const Change> changes);
-  /// Returns the items in the order of the tree: place -> item.
-  std::span<const std::uint32_t> order() const { return order_; }
   std::size_t memory_bytes() const;
 
-  /// Calls visit(item, distance) for items whose boxes are within visitor.reach() of a point, the nearer ones first.
-  /// The distance is a lower bound; reach() may shrink meanwhile. Ends early if visit returns false.
+  /// The way of a search through the tree.
+  class Path;
+  /// Begins a search at the block whose boxes are the nearest to a point, which it fetches into the caches.
+  void begin(const kernel::NearestKernels& kernels, const Vec3& point, Path& path) const;
+  /// Returns the item of the block at which a search is whose box is the nearest to the point, or no_id.
+  std::uint32_t nearest_item(Path& path) const;
+  /// Calls visit(item, distance) for items whose boxes are within visitor.reach() of the point of a path that has
+  /// begun, the nearer ones first. The distance is a lower bound; reach() may shrink meanwhile. Ends early if visit
+  /// returns false.
   template <class Visitor>
-  void visit_near(const Vec3& point, Visitor& visitor) const;
+  void visit_near(Path& path, Visitor& visitor) const;
 
  private:
-  struct alignas(32) Node {
-    float lower[3][width], upper[3][width];
+  struct Node {
+    kernel::NodeBoxes boxes;
     std::uint32_t child[width];  ///< a node, a block with `block_bit`, or no_id
   };
-  struct alignas(32) Block {
-    float centre[3][width], axes[3][3][width], half[3][width];
-    std::uint32_t first = 0, count = 0;  ///< a run of `order_`
+  struct Block {
+    kernel::BlockBoxes boxes;
+    std::uint32_t item[width];  ///< or no_id, with a box that no point is near to
   };
   static constexpr std::uint32_t block_bit = 0x80000000;
   /// Up to this distance from the middle of the scene, float is fine enough.
   static constexpr double max_float_distance = 16;
-  static constexpr std::size_t max_stack = 256;
+  /// More than there are: a part of n items has parts of n / 8 + 14 at most.
+  static constexpr std::size_t max_depth = 24;
 
-  struct Entry {
-    double square;
-    std::uint32_t child;
-  };
-
-  std::uint32_t build_part(std::span<const ItemBoxes> items, std::size_t begin, std::size_t end);
-  std::uint32_t make_block(std::span<const ItemBoxes> items, std::size_t begin, std::size_t end);
-  void set_box(Block& block, std::size_t lane, const PieceBox& box) const;
+  std::uint32_t build_part(std::span<const ItemBoxes> items, std::span<std::uint32_t> order);
+  std::uint32_t make_block(std::span<const ItemBoxes> items, std::span<const std::uint32_t> order);
+  void set_item(std::size_t place, const ItemBoxes& boxes, std::uint32_t item);
   static void set_child(Node& node, std::size_t lane, const Box3& box);
   Box3 box_of(std::uint32_t child) const;
-  template <class Real>
-  void squares_of(const Node& node, const Real (&point)[3], Real (&squares)[width]) const;
-  void squares_of(const Block& block, const float (&point)[3], float (&squares)[width]) const;
-  template <class Real, class Visitor>
-  void visit_as(const Vec3& point, double margin, Visitor& visitor) const;
-  template <class Real, class Visitor>
-  bool visit_block(const Block& block, const Real (&point)[3], double margin, Visitor& visitor) const;
+  /// The squared distances in float by kernels, or in double.
+  struct FloatSquares;
+  struct DoubleSquares;
+  template <class Squares>
+  struct Level;
+  template <class Squares>
+  struct Way;
+  template <class Squares>
+  void start(Way<Squares>& way) const;
+  template <class Squares>
+  bool next_block(Way<Squares>& way, double limit) const;
+  template <class Squares, class Visitor>
+  void visit_by(Way<Squares>& way, double margin, Visitor& visitor) const;
 
   std::vector<Node> nodes_;  ///< children behind their parents
   std::vector<Block> blocks_;
-  std::vector<std::uint32_t> order_, place_of_;
-  std::vector<std::array<float, 6>> item_boxes_;  ///< by places: lower, upper
-  std::uint32_t root_ = 0;
+  std::vector<std::uint32_t> place_of_;           ///< `[item]`: block times width, and the lane
+  std::vector<std::array<float, 6>> item_boxes_;  ///< `[item]`: lower, upper
+  std::uint32_t root_ = no_id;
 };
 
-template <class Real>
-inline void QueryTree::squares_of(const Node& node, const Real (&point)[3], Real (&squares)[width]) const {
-  for (std::size_t k = 0; k < width; ++k) squares[k] = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t k = 0; k < width; ++k) {
-      const Real below = Real(node.lower[c][k]) - point[c], above = point[c] - Real(node.upper[c][k]);
-      const Real larger = below > above ? below : above;
-      const Real beyond = larger > 0 ? larger : 0;
-      squares[k] += beyond * beyond;
-    }
-  }
-}
+struct QueryTree::FloatSquares {
+  using Real = float;
+  const kernel::NearestKernels* kernels;
+  float at[3];
 
-inline void QueryTree::squares_of(const Block& block, const float (&point)[3], float (&squares)[width]) const {
-  float from[3][width];
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t k = 0; k < width; ++k) from[c][k] = point[c] - block.centre[c][k];
-  for (std::size_t k = 0; k < width; ++k) squares[k] = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t k = 0; k < width; ++k) {
-      const float along =
-          from[0][k] * block.axes[a][0][k] + from[1][k] * block.axes[a][1][k] + from[2][k] * block.axes[a][2][k];
-      const float over = (along < 0 ? -along : along) - block.half[a][k];
-      const float beyond = over > 0 ? over : 0;
-      squares[k] += beyond * beyond;
-    }
+  unsigned operator()(const Node& node, double limit, float (&squares)[width]) const {
+    return kernels->node_squares(node.boxes, at, rounded_up(limit), squares);
   }
-}
+  unsigned operator()(const Block& block, double limit, float (&squares)[width]) const {
+    return kernels->block_squares(block.boxes, at, rounded_up(limit), squares);
+  }
 
-template <class Real, class Visitor>
-bool QueryTree::visit_block(const Block& block, const Real (&point)[3], double margin, Visitor& visitor) const {
-  double squares[width];
-  if constexpr (sizeof(Real) == sizeof(float)) {
-    float narrow[width];
-    squares_of(block, point, narrow);
-    for (std::size_t k = 0; k < width; ++k) squares[k] = narrow[k];
-  } else {
-    for (std::size_t k = 0; k < block.count; ++k) {
+ private:
+  /// Finite, so that places without a box are never near.
+  static float rounded_up(double limit) {
+    return static_cast<float>(std::min(limit * (1 + 0x1p-22), double(std::numeric_limits<float>::max())));
+  }
+};
+
+struct QueryTree::DoubleSquares {
+  using Real = double;
+  const std::array<float, 6>* item_boxes;
+  Vec3 at;
+
+  unsigned operator()(const Node& node, double limit, double (&squares)[width]) const {
+    unsigned near = 0;
+    for (std::size_t k = 0; k < width && node.child[k] != no_id; ++k) {
       squares[k] = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto& box = item_boxes_[block.first + k];
-        const double beyond = std::max({double(box[c]) - point[c], point[c] - double(box[c + 3]), 0.0});
-        squares[k] += beyond * beyond;
-      }
+      for (std::size_t c = 0; c < 3; ++c) squares[k] += beyond(node.boxes.lower[c][k], node.boxes.upper[c][k], c);
+      near |= unsigned{squares[k] <= limit} << k;
     }
+    return near;
   }
-  unsigned left = (1u << block.count) - 1;
-  while (left != 0) {
-    const double reach = visitor.reach() + margin, limit = reach * reach;
-    std::size_t nearest = width;
-    double least = limit;
-    for (std::size_t k = 0; k < block.count; ++k) {
-      if ((left >> k & 1) != 0 && squares[k] <= least) least = squares[k], nearest = k;
+  unsigned operator()(const Block& block, double limit, double (&squares)[width]) const {
+    unsigned near = 0;
+    for (std::size_t k = 0; k < width && block.item[k] != no_id; ++k) {
+      const std::array<float, 6>& box = item_boxes[block.item[k]];
+      squares[k] = 0;
+      for (std::size_t c = 0; c < 3; ++c) squares[k] += beyond(box[c], box[c + 3], c);
+      near |= unsigned{squares[k] <= limit} << k;
     }
-    if (nearest == width) return true;
-    left &= ~(1u << nearest);
-    const double distance = std::max(std::sqrt(least) - margin, 0.0);
-    if (!visitor.visit(order_[block.first + nearest], distance)) return false;
+    return near;
   }
-  return true;
+
+ private:
+  double beyond(double lower, double upper, std::size_t axis) const {
+    const double x = axis == 0 ? at.x : axis == 1 ? at.y : at.z, out = std::max({lower - x, x - upper, 0.0});
+    return out * out;
+  }
+};
+
+/// The boxes of a node or a block that are left to be looked at.
+template <class Squares>
+struct QueryTree::Level {
+  typename Squares::Real squares[width];
+  const std::uint32_t* content;  ///< children of a node, or items of a block
+  unsigned left;
+
+  template <class Boxes>
+  void start(const Squares& squares_of, const Boxes& boxes, const std::uint32_t (&of)[width], double limit) {
+    content = of;
+    left = squares_of(boxes, limit, squares);
+  }
+  /// Takes the nearest of what is left within a limit. Returns false if there is none, and then nothing is left.
+  bool take(double limit, std::size_t& lane) {
+    if (left == 0) return false;
+    lane = static_cast<std::size_t>(std::countr_zero(left));
+    for (unsigned rest = left & (left - 1); rest != 0; rest &= rest - 1)
+      if (const auto k = static_cast<std::size_t>(std::countr_zero(rest)); squares[k] < squares[lane]) lane = k;
+    const bool is_near = squares[lane] <= limit;
+    left = is_near ? left & ~(1u << lane) : 0;
+    return is_near;
+  }
+};
+
+template <class Squares>
+struct QueryTree::Way {
+  Squares squares_of;
+  std::size_t depth = 0;
+  std::uint32_t block = no_id;  ///< where the way is
+  Level<Squares> in_block, levels[max_depth];
+};
+
+class QueryTree::Path {
+ public:
+  /// The point of the search.
+  const Vec3& point() const { return point_; }
+
+ private:
+  friend class QueryTree;
+  Vec3 point_;
+  double far_ = 0;  ///< the distance of the point from the middle of the scene, at most
+  Way<FloatSquares> way_;
+};
+
+template <class Squares>
+void QueryTree::start(Way<Squares>& way) const {
+  way.depth = 0, way.block = no_id, way.levels[0].left = 0;
+  if (root_ == no_id) return;
+  if ((root_ & block_bit) != 0)
+    way.block = root_;
+  else
+    way.levels[0].start(way.squares_of, nodes_[root_], nodes_[root_].child, infinity);
 }
 
-template <class Real, class Visitor>
-void QueryTree::visit_as(const Vec3& point, double margin, Visitor& visitor) const {
-  const Real at[3] = {static_cast<Real>(point.x), static_cast<Real>(point.y), static_cast<Real>(point.z)};
-  Entry stack[max_stack];
-  std::size_t count = 0;
-  stack[count++] = {0, root_};
-  while (count > 0) {
-    const Entry entry = stack[--count];
-    double reach = visitor.reach() + margin;
-    if (entry.square > reach * reach) continue;
-    if ((entry.child & block_bit) != 0) {
-      if (!visit_block(blocks_[entry.child & ~block_bit], at, margin, visitor)) return;
+/// Goes on to the nearest block within a limit. Returns false if there is none.
+template <class Squares>
+bool QueryTree::next_block(Way<Squares>& way, double limit) const {
+  for (std::size_t lane = 0;;) {
+    if (!way.levels[way.depth].take(limit, lane)) {
+      if (way.depth == 0) return false;
+      --way.depth;
       continue;
     }
-    const Node& node = nodes_[entry.child];
-    Real squares[width];
-    squares_of(node, at, squares);
-    const std::size_t first = count;
-    for (std::size_t k = 0; k < width; ++k) {
-      if (!(double(squares[k]) <= reach * reach) || node.child[k] == no_id) continue;
-      std::size_t place = count++;  // the farthest first, the nearest on top
-      for (; place > first && stack[place - 1].square < double(squares[k]); --place) stack[place] = stack[place - 1];
-      stack[place] = {double(squares[k]), node.child[k]};
+    const std::uint32_t child = way.levels[way.depth].content[lane];
+    if ((child & block_bit) != 0) {
+      way.block = child;
+      return true;
     }
+    way.levels[++way.depth].start(way.squares_of, nodes_[child], nodes_[child].child, limit);
+  }
+}
+
+template <class Squares, class Visitor>
+void QueryTree::visit_by(Way<Squares>& way, double margin, Visitor& visitor) const {
+  const auto limit = [&] {
+    const double reach = visitor.reach() + margin;
+    return reach * reach;
+  };
+  while (way.block != no_id || next_block(way, limit())) {
+    const Block& block = blocks_[way.block & ~block_bit];
+    Level<Squares>& in = way.in_block;
+    in.start(way.squares_of, block, block.item, limit());
+    for (std::size_t lane = 0; in.take(limit(), lane);)
+      if (!visitor.visit(block.item[lane], std::max(std::sqrt(double(in.squares[lane])) - margin, 0.0))) return;
+    way.block = no_id;
   }
 }
 
 template <class Visitor>
-void QueryTree::visit_near(const Vec3& point, Visitor& visitor) const {
-  if (order_.empty()) return;
-  const double far = max_abs(point);
-  if (far <= max_float_distance)
-    visit_as<float>(point, 2e-6 * (1 + far), visitor);
-  else
-    visit_as<double>(point, 0x1p-50 * far, visitor);
+void QueryTree::visit_near(Path& path, Visitor& visitor) const {
+  if (path.far_ <= max_float_distance) return visit_by(path.way_, 2e-6 * (1 + path.far_), visitor);
+  Way<DoubleSquares> way;
+  way.squares_of = {item_boxes_.data(), path.point_};
+  start(way);
+  visit_by(way, 0x1p-50 * path.far_, visitor);
 }
 
 }}  // namespace tessera::abi_0_1

@@ -14,6 +14,11 @@ struct Fours {
   static Four min(Four a, Four b) { return vminq_f32(a, b); }
   static Four max(Four a, Four b) { return vmaxq_f32(a, b); }
   static Four abs(Four a) { return vabsq_f32(a); }
+  /// Returns the bits of the places where a <= b.
+  static unsigned at_most(Four a, Four b) {
+    constexpr std::uint32_t bits[] = {1, 2, 4, 8};
+    return vaddvq_u32(vandq_u32(vcleq_f32(a, b), vld1q_u32(bits)));
+  }
   static Four fma(Four a, Four b, Four c) { return vfmaq_f32(c, a, b); }             // a b + c
   static Four fms(Four a, Four b, Four c) { return vfmaq_f32(vnegq_f32(c), a, b); }  // a b - c
   static Four fnma(Four a, Four b, Four c) { return vfmsq_f32(c, a, b); }            // c - a b

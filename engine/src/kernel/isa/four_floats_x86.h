@@ -15,6 +15,8 @@ struct Fours {
   static Four min(Four a, Four b) { return _mm_min_ps(a, b); }
   static Four max(Four a, Four b) { return _mm_max_ps(a, b); }
   static Four abs(Four a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+  /// Returns the bits of the places where a <= b.
+  static unsigned at_most(Four a, Four b) { return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a, b))); }
 #if defined(__FMA__)
   static Four fma(Four a, Four b, Four c) { return _mm_fmadd_ps(a, b, c); }    // a b + c
   static Four fms(Four a, Four b, Four c) { return _mm_fmsub_ps(a, b, c); }    // a b - c

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "kernel/ray/nearest_kernels.h"
+
 namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
 /// A piece of a patch in coordinates of its own: x -> axis[.] (x - centre), in which the piece is nearly (u, v, 0),
@@ -140,6 +142,7 @@ struct RayKernels {
   /// Does this for a rational patch of degrees m, n up to 3.
   void (*low_rational_point)(const double* points, const double* weights, int m, int n, const double* origin, double u,
                              double v, RayPoint& out);
+  NearestKernels nearest;
 };
 
 }}}  // namespace tessera::abi_0_1::kernel

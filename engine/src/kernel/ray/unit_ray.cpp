@@ -9,6 +9,7 @@ namespace tessera { inline namespace abi_0_1 { namespace kernel { namespace TESS
 namespace {
 
 #include "kernel/ray/cubic_point.inl.h"
+#include "kernel/ray/nearest_kernel.inl.h"
 #include "kernel/ray/ray_kernel.inl.h"
 #if !defined(__SSE2__) || defined(__FMA__)
 #include "kernel/ray/ray_line_kernel.inl.h"
@@ -24,7 +25,8 @@ constexpr const RayPacketKernels* packets = nullptr;
 }  // namespace
 
 extern const RayKernels ray_kernels = {
-    packets, trace_polynomial_leaf, trace_rational_leaf, cubic_point, low_rational_point,
+    packets,     trace_polynomial_leaf, trace_rational_leaf,
+    cubic_point, low_rational_point,    {node_squares, block_squares, cubic_second_order, half_square},
 };
 
 }}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

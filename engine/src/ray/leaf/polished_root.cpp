@@ -12,26 +12,12 @@ namespace {
 
 using kernel::PolishJob;
 
-Vec3 triple(const double* x) { return {x[0], x[1], x[2]}; }
-
 }  // namespace
 
 FirstOrder scene_point(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, double u,
                        double v) {
-  const double* const points = &patch.points().data()->x;
-  const int m = patch.degree_u(), n = patch.degree_v();
-  FirstOrder out;
-  kernel::RayPoint at;
-  if (std::max(m, n) <= 3 && patch.is_rational()) {
-    kernels.low_rational_point(points, patch.weights().data(), m, n, &frame.centre.x, u, v, at);
-    out = {triple(at.position), triple(at.du), triple(at.dv)};
-  } else if (m == 3 && n == 3 && !patch.is_rational()) {
-    kernels.cubic_point(points, &frame.centre.x, u, v, at);
-    out = {triple(at.position), triple(at.du), triple(at.dv)};
-  } else {
-    out = first_order(patch, u, v, frame.centre);
-  }
-  return {frame.scale * out.position, frame.scale * out.du, frame.scale * out.dv};
+  const FirstOrder at = first_order(patch, frame.centre, kernels, u, v);
+  return {frame.scale * at.position, frame.scale * at.du, frame.scale * at.dv};
 }
 
 bool polish(const BezierPatch& patch, const SceneFrame& frame, const kernel::RayKernels& kernels, const RayLine& line,

@@ -1,5 +1,6 @@
 #include "ray/line/first_order.h"
 
+#include <algorithm>
 #include <array>
 
 namespace tessera { inline namespace abi_0_1 {
@@ -96,6 +97,21 @@ FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3&
   if (patch.is_rational()) return rational(patch, u, v, origin);
   if (patch.degree_u() == 3 && patch.degree_v() == 3) return polynomial<3, 3>(patch, u, v, origin);
   return polynomial<0, 0>(patch, u, v, origin);
+}
+
+FirstOrder first_order(const BezierPatch& patch, const Vec3& origin, const kernel::RayKernels& kernels, double u,
+                       double v) {
+  const double* const points = &patch.points().data()->x;
+  const int m = patch.degree_u(), n = patch.degree_v();
+  const auto triple = [](const double* x) { return Vec3{x[0], x[1], x[2]}; };
+  kernel::RayPoint found;
+  if (std::max(m, n) <= 3 && patch.is_rational())
+    kernels.low_rational_point(points, patch.weights().data(), m, n, &origin.x, u, v, found);
+  else if (m == 3 && n == 3 && !patch.is_rational())
+    kernels.cubic_point(points, &origin.x, u, v, found);
+  else
+    return first_order(patch, u, v, origin);
+  return {triple(found.position), triple(found.du), triple(found.dv)};
 }
 
 }}  // namespace tessera::abi_0_1
