@@ -26,6 +26,7 @@ fail() {
 comparisons=(
   "grid_evaluation|a bicubic B-spline surface at a grid: OpenSubdiv (libosd-dev), OpenCASCADE, SISL (libsisl-dev)"
   "ray_casting|a camera's rays on a bicubic surface: Embree's triangles, grids, subdivision; OpenCASCADE; SISL; POV-Ray (povray)"
+  "nearest_points|nearest points of a bicubic surface, near it and anywhere in its box: OpenCASCADE, SISL"
   "occt_extraction|Bezier extraction of a 200 x 200 bicubic B-spline surface: OpenCASCADE (libocct-modeling-data-dev)"
   "occt_mesh|meshes of equal error of the same surfaces: OpenCASCADE (libocct-modeling-algorithms-dev)"
   "occt_lean_mesh|triangles at equal error, mainly of rational surfaces and models: OpenCASCADE (libocct-data-exchange-dev)"

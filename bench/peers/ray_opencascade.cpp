@@ -2,12 +2,8 @@
 // line; the first one counts. It is slow, so it casts one ray in many.
 
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <Geom_BSplineSurface.hxx>
 #include <IntCurvesFace_Intersector.hxx>
 #include <Standard_Version.hxx>
-#include <TColStd_Array1OfInteger.hxx>
-#include <TColStd_Array1OfReal.hxx>
-#include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS_Face.hxx>
 #include <gp_Lin.hxx>
 
@@ -16,6 +12,7 @@
 #include <memory>
 
 #include "peers/interleaved.h"
+#include "peers/occt_spline.h"
 #include "peers/ray_task.h"
 
 namespace tessera::bench { namespace {
@@ -36,18 +33,8 @@ class Casting {
 
  private:
   static TopoDS_Face face_of(const RayTask& task) {
-    const int count = task.spans + 7;
-    TColStd_Array1OfReal knots(1, count);
-    TColStd_Array1OfInteger once(1, count);
-    for (int k = 1; k <= count; ++k) knots.SetValue(k, k - 4), once.SetValue(k, 1);
-    TColgp_Array2OfPnt poles(1, task.side(), 1, task.side());
-    for (int i = 0; i < task.side(); ++i)
-      for (int j = 0; j < task.side(); ++j) {
-        const Vec3& p = task.net[static_cast<std::size_t>(i * task.side() + j)];
-        poles.SetValue(i + 1, j + 1, gp_Pnt(p.x, p.y, p.z));
-      }
-    const Handle(Geom_BSplineSurface) surface = new Geom_BSplineSurface(poles, knots, knots, once, once, 3, 3);
-    return BRepBuilderAPI_MakeFace(surface, 0.0, task.spans, 0.0, task.spans, 1e-7).Face();
+    const double end = task.spans;
+    return BRepBuilderAPI_MakeFace(uniform_spline(task.net, task.spans), 0.0, end, 0.0, end, 1e-7).Face();
   }
 
   /// The parameters along the line are lengths.

@@ -1,6 +1,6 @@
 #pragma once
-// The protocol between grid_sisl.cpp and the program sisl_grid, and between ray_sisl.cpp and sisl_rays, over standard
-// input and output. Numbers are in the machine's own format.
+// The protocols between grid_sisl.cpp and the program sisl_grid, ray_sisl.cpp and sisl_rays, nearest_sisl.cpp and
+// sisl_points, over standard input and output. Numbers are in the machine's own format.
 
 #include <cstdint>
 
@@ -21,4 +21,12 @@ struct SislRayTask {
   std::int32_t side = 0;
   std::int32_t rays = 0;
   double tolerance = 0;  ///< of s1856, a length
+};
+
+/// Sent to sisl_points: this, its control points as above and its points, 3 doubles each; then commands:
+///   'r'  searches from all points: the answer is the seconds of processor time, and the distance of each
+struct SislPointTask {
+  std::int32_t side = 0;
+  std::int32_t points = 0;
+  double tolerance = 0;  ///< of s1958, a length
 };

@@ -2,7 +2,6 @@
 // own, like sisl_grid.cpp. Sends back the nearest point of each ray from its origin on.
 
 #include <sisl.h>
-#include <time.h>
 
 #include <cmath>
 #include <cstdio>
@@ -10,36 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "sisl_protocol.h"
+#include "sisl_program.h"
 
 namespace {
-
-template <class T>
-bool read(T* values, std::size_t count) {
-  return std::fread(values, sizeof(T), count, stdin) == count;
-}
-template <class T>
-bool write(const T* values, std::size_t count) {
-  return std::fwrite(values, sizeof(T), count, stdout) == count && std::fflush(stdout) == 0;
-}
-
-/// See interleaved.h.
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// In SISL the first parameter runs fastest.
-SISLSurf* surface_of(const SislRayTask& task, const std::vector<double>& net) {
-  const int n = task.side;
-  std::vector<double> knots, points;
-  for (int k = 0; k < n + 4; ++k) knots.push_back(k - 3);
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < 3; ++c) points.push_back(net[static_cast<std::size_t>(3 * (i * n + j) + c)]);
-  return newSurf(n, n, 4, 4, knots.data(), knots.data(), points.data(), 1, 3, 1);
-}
 
 /// t of the nearest hit of the ray x y z dx dy dz; infinite for a miss, NaN if SISL gives up.
 double closest(SISLSurf* surface, double* ray, double tolerance) {
@@ -72,7 +44,7 @@ int main() {
   const auto side = static_cast<std::size_t>(task.side), count = static_cast<std::size_t>(task.rays);
   std::vector<double> net(3 * side * side), rays(6 * count), t(count);
   if (!read(net.data(), net.size()) || !read(rays.data(), rays.size())) return 1;
-  SISLSurf* surface = surface_of(task, net);
+  SISLSurf* surface = surface_of(task.side, net);
   if (surface == nullptr) return 1;
   for (char command = 0; read(&command, 1);) {
     const double start = processor_seconds();
