@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/synthetic_sets.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera::test {
@@ -70,32 +71,69 @@ struct SquaredDistance {
   }
 };
 
+/// A part of a patch, from (u0, v0) to (u1, v1).
+struct ReferencePart {
+  SquaredDistance square;
+  const BezierPatch* patch;  ///< relative to the point
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+  int depth = 0;
+
+  /// Cuts it in half; this becomes the first half.
+  ReferencePart halve() {
+    const bool along_u = depth % 2 == 0;
+    ReferencePart other{square.halve(along_u), patch, u0, u1, v0, v1, ++depth};
+    if (along_u)
+      u1 = other.u0 = 0.5 * (u0 + u1);
+    else
+      v1 = other.v0 = 0.5 * (v0 + v1);
+    return other;
+  }
+};
+
+/// Returns a patch relative to a point.
+inline BezierPatch relative_to(const BezierPatch& patch, const Vec3& point) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : patch.points()) points.push_back(p - point);
+  const int m = patch.degree_u(), n = patch.degree_v();
+  return patch.is_rational() ? value_of(BezierPatch::rational(m, n, points, patch.weights()))
+                             : value_of(BezierPatch::polynomial(m, n, points));
+}
+
 /// Returns the distance of the nearest of all points that the search meets. None is nearer whose square is smaller by
-/// more than `gap`, unless parts have become too many.
+/// more than `gap`, or by the rounding of squares, unless parts have become too many.
 inline double reference_distance(const std::vector<BezierPatch>& patches, const Vec3& point, double gap,
                                  std::size_t max_parts = 100000) {
-  struct Part {
-    SquaredDistance square;
-    int depth;
-  };
-  std::vector<Part> left;
+  std::vector<BezierPatch> from_point;
+  for (const BezierPatch& patch : patches) from_point.push_back(relative_to(patch, point));
+  std::vector<ReferencePart> left;
   long double best = std::numeric_limits<long double>::infinity();
-  for (const BezierPatch& patch : patches) {
-    left.push_back({SquaredDistance(patch, point), 0});
-    best = std::min(best, left.back().square.least_corner());
+  double distance = std::numeric_limits<double>::infinity();
+  // The distance is taken from the patch itself: a square is rounded to 1e-19, its root to 3e-10.
+  const auto look_at_corners = [&](const ReferencePart& part) {
+    const SquaredDistance& s = part.square;
+    const auto look = [&](int i, int j, double u, double v) {
+      if (!(s.corner(i, j) < best)) return;
+      best = s.corner(i, j);
+      distance = length(de_casteljau(*part.patch, u, v));
+    };
+    look(0, 0, part.u0, part.v0), look(s.m, 0, part.u1, part.v0);
+    look(0, s.n, part.u0, part.v1), look(s.m, s.n, part.u1, part.v1);
+  };
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    left.push_back({SquaredDistance(patches[k], point), &from_point[k]});
+    look_at_corners(left.back());
   }
-  std::ranges::sort(left, {}, [](const Part& part) { return -part.square.least_corner(); });
+  std::ranges::sort(left, {}, [](const ReferencePart& part) { return -part.square.least_corner(); });
   for (std::size_t parts = 0; !left.empty() && parts < max_parts; ++parts) {
-    Part part = std::move(left.back());
+    ReferencePart part = std::move(left.back());
     left.pop_back();
-    best = std::min(best, part.square.least_corner());
+    look_at_corners(part);
     if (part.depth > 110 || part.square.is_above(std::max(best - gap, 0.0L))) continue;
-    Part other{part.square.halve(part.depth % 2 == 0), part.depth + 1};
-    ++part.depth;
+    ReferencePart other = part.halve();
     if (part.square.least_corner() < other.square.least_corner()) std::swap(part, other);
     left.push_back(std::move(part)), left.push_back(std::move(other));
   }
-  return double(std::sqrt(std::max(best, 0.0L)));
+  return distance;
 }
 
 }  // namespace tessera::test
