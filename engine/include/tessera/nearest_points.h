@@ -102,6 +102,18 @@ class PointScene {
   /// Finds the nearest point to one point. A stale scene, as any error, returns NearestKind::invalid_point.
   NearestPoint nearest(const Vec3& point, double max_distance = std::numeric_limits<double>::infinity()) const;
 
+  /// Finds the nearest points of the nearest patches to each point, one of each patch.
+  ///
+  /// - `count`: patches for each point, 1 to 2^20.
+  /// - `nearest`: at least `count` for each point, `[point][k]`, the nearest first; NearestKind::none where there are
+  ///   fewer patches within max_distance. NearestFlags::certified: no patch that is not listed is nearer, and no other
+  ///   point of a listed one. `ambiguous` is not set.
+  ///
+  /// Errors: those of nearest(); invalid_argument (count).
+  Status nearest_patches(std::span<const Vec3> points, std::size_t count, std::span<NearestPoint> nearest,
+                         double max_distance = std::numeric_limits<double>::infinity(),
+                         const Execution& execution = {}) const;
+
   /// Finds all places of the surface within a distance of each point, such as the parameters of points that lie on it.
   /// A point at a border that patches share has a place in each of them; one at a pole has one in each patch.
   ///

@@ -27,6 +27,7 @@ void NearestSearch::start(const Vec3& point, double max_distance) {
   outcome_ = {};
   outcome_.slack = (2 * pieces_.rounding() + relative_slack * length(scene_point_)) / frame.scale;
   outcome_.best.distance = max_distance;
+  parts_allowed_ = max_parts;
   tie_count_ = 0;
   reach_ = (max_distance + outcome_.slack) * frame.scale;
 }
@@ -35,11 +36,11 @@ void NearestSearch::search(QueryTree::Path& path) {
   deferred_.clear();
   pieces_.tree().visit_near(path, *this);
   for (const Deferred& one : deferred_)
-    if (one.lower <= reach_ && !branch(*one.piece, max_parts)) outcome_.complete = false;
+    if (one.lower <= reach_ && !branch(*one.piece, parts_allowed_)) outcome_.complete = false;
 }
 
 NearestSearch::Outcome NearestSearch::run(QueryTree::Path& path, const Vec3& point, double max_distance) {
-  finds_all_ = false;
+  wanted_ = Wanted::nearest;
   start(point, max_distance);
   search(path);
   polish(outcome_.best);
@@ -51,7 +52,7 @@ NearestSearch::Outcome NearestSearch::run(QueryTree::Path& path, const Vec3& poi
 }
 
 NearestSearch::Outcome NearestSearch::run_all(QueryTree::Path& path, const Vec3& point, double distance) {
-  finds_all_ = true;
+  wanted_ = Wanted::all_places;
   places_.clear();
   start(point, distance);
   search(path);
@@ -63,6 +64,40 @@ NearestSearch::Outcome NearestSearch::run_all(QueryTree::Path& path, const Vec3&
   }
   std::ranges::sort(places_, {}, [](const NearCandidate& a) { return std::tuple(a.patch, a.u, a.v); });
   return outcome_;
+}
+
+NearestSearch::Outcome NearestSearch::run_patches(QueryTree::Path& path, const Vec3& point, double max_distance,
+                                                  std::size_t count) {
+  wanted_ = Wanted::patches, patches_wanted_ = count;
+  places_.clear();
+  start(point, max_distance);
+  parts_allowed_ = max_parts + static_cast<int>(std::min(count, max_patches)) * parts_per_patch;
+  search(path);
+  for (NearCandidate& one : places_) polish(one);
+  std::ranges::sort(places_, {}, [](const NearCandidate& a) { return std::tuple(a.distance, a.patch); });
+  return outcome_;
+}
+
+/// Returns the distance beyond which points of a patch are of no use.
+double NearestSearch::limit(std::uint32_t patch) const {
+  if (wanted_ != Wanted::patches) return outcome_.best.distance;
+  const auto known = std::ranges::find(places_, patch, &NearCandidate::patch);
+  if (known != places_.end()) return known->distance;
+  return places_.size() < patches_wanted_ ? outcome_.best.distance : places_.back().distance;
+}
+
+/// Keeps the nearest point of each of the nearest patches, the nearest first.
+void NearestSearch::add_patch(const NearCandidate& candidate) {
+  const auto known = std::ranges::find(places_, candidate.patch, &NearCandidate::patch);
+  if (known != places_.end()) {
+    if (!is_better(candidate, *known)) return;
+    places_.erase(known);
+  } else if (places_.size() == patches_wanted_) {
+    places_.pop_back();
+  }
+  places_.insert(std::ranges::upper_bound(places_, candidate.distance, {}, &NearCandidate::distance), candidate);
+  if (places_.size() == patches_wanted_)
+    reach_ = std::min(reach_, (places_.back().distance + outcome_.slack) * pieces_.frame().scale);
 }
 
 /// Moves a candidate to the foot of a perpendicular near it. It may be one of a part's border or of few steps, which is
@@ -102,7 +137,7 @@ void NearestSearch::add_place(const NearCandidate& candidate) {
 }
 
 bool NearestSearch::visit(std::uint32_t item, double distance) {
-  if (outcome_.parts >= max_parts) {
+  if (outcome_.parts >= parts_allowed_) {
     outcome_.complete = false;
     return false;
   }
@@ -112,14 +147,14 @@ bool NearestSearch::visit(std::uint32_t item, double distance) {
     ++outcome_.parts;
     if (is_decided(piece, piece.area, piece.facts)) return true;
     // The nearest kept point of a cut piece may lie on a curve: once that is known, few parts of the piece are left.
-    const bool has_work = !piece.is_cut && outcome_.parts < max_first_parts;
+    const bool has_work = !piece.is_cut && outcome_.parts < parts_allowed_ / 4;
     if (!has_work || !branch(piece, first_parts)) deferred_.push_back({&piece, distance});
     return true;
   }
   const KeptCurve& curve = pieces_.curves()[item - pieces.size()];
   const CurveGround ground{&set_.patch(curve.patch), &set_.source(curve.patch).domain, &pieces_.frame()};
   const Foot foot =
-      nearest_foot(ground, curve, point_, outcome_.best.distance + outcome_.slack, max_parts, outcome_.parts);
+      nearest_foot(ground, curve, point_, limit(curve.patch) + outcome_.slack, parts_allowed_, outcome_.parts);
   if (!foot.converged) outcome_.complete = false;
   if (!foot.is_farther) offer({curve.patch, foot.u, foot.v, foot.position, foot.distance, true, true, true});
   return true;
@@ -148,17 +183,17 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   const double u = 0.5 + x / double(facts.length_u), v = 0.5 + y / double(facts.length_v);
   const Foot foot =
       nearest_foot(ground(piece.patch), point_, part, area.u0 + u * (area.u1 - area.u0),
-                   area.v0 + v * (area.v1 - area.v0), outcome_.best.distance + outcome_.slack, outcome_.slack);
+                   area.v0 + v * (area.v1 - area.v0), limit(piece.patch) + outcome_.slack, outcome_.slack);
   if (foot.is_farther) return true;
   offer(piece, foot);
   return foot.converged;
 }
 
 /// Halves a piece until each part is decided, or cannot be nearer by more than rounding. Returns whether `parts`
-/// sufficed, and what is left of max_parts.
+/// sufficed, and what is left of parts_allowed_.
 bool NearestSearch::branch(const QueryPiece& piece, int parts) {
   const double scale = pieces_.frame().scale;
-  const int limit = std::min(max_parts, outcome_.parts + parts);
+  const int most_parts = std::min(parts_allowed_, outcome_.parts + parts);
   stack_.clear();
   push(piece, piece.area);
   while (!stack_.empty()) {
@@ -171,10 +206,11 @@ bool NearestSearch::branch(const QueryPiece& piece, int parts) {
     offer(piece,
           nearest_foot(ground(piece.patch), point_, area, middle_u, middle_v, infinity, outcome_.slack, few_steps));
     // All points of the part are as near, up to rounding, as the nearest one, or as each other.
-    const double rounding = outcome_.slack * scale, near = outcome_.best.distance * scale;
-    const double point_size = finds_all_ ? std::max(4 * rounding, near) : 4 * rounding;
-    if (part.lower >= near - (finds_all_ ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
-    if (++outcome_.parts >= limit || stack_.size() + 2 > max_stack) return false;
+    const bool all = wanted_ == Wanted::all_places;
+    const double rounding = outcome_.slack * scale, near = limit(piece.patch) * scale;
+    const double point_size = all ? std::max(4 * rounding, near) : 4 * rounding;
+    if (part.lower >= near - (all ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
+    if (++outcome_.parts >= most_parts || stack_.size() + 2 > max_stack) return false;
     const auto [lower, upper] = halves(area, part.bounds.facts);
     push(piece, lower), push(piece, upper);
     const std::size_t count = stack_.size();
@@ -217,23 +253,28 @@ bool NearestSearch::is_kept(std::uint32_t patch, double u, double v) const {
 }
 
 void NearestSearch::offer(const QueryPiece& piece, const Foot& foot) {
-  if (!(foot.distance <= outcome_.best.distance + outcome_.slack)) return;
+  if (!(foot.distance <= limit(piece.patch) + outcome_.slack)) return;
   if (piece.is_cut && !is_kept(piece.patch, foot.u, foot.v)) return;
   offer({piece.patch, foot.u, foot.v, foot.position, foot.distance, foot.on_border, foot.converged});
 }
 
-/// Takes a candidate if it is the nearest so far. Up to the last digits, those where the line is perpendicular come
+/// Whether a candidate is nearer than another one. Up to the last digits, those where the line is perpendicular come
 /// first: a foot just across a border of pieces is the nearest point of both. Of equally near ones the first by patch
-/// and parameters counts, whichever was found first. Others that are as near up to rounding are kept as ties.
-void NearestSearch::offer(const NearCandidate& candidate) {
-  NearCandidate& best = outcome_.best;
-  if (!(candidate.distance <= best.distance + outcome_.slack)) return;
-  if (finds_all_) return add_place(candidate);
+/// and parameters counts, whichever was found first.
+bool NearestSearch::is_better(const NearCandidate& candidate, const NearCandidate& best) const {
   const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
   const double digits = 0.125 * outcome_.slack;
   const bool is_as_near = best.patch != no_id && std::abs(candidate.distance - best.distance) <= digits;
-  const bool wins =
-      is_as_near && candidate.on_border != best.on_border ? best.on_border : order(candidate) < order(best);
+  return is_as_near && candidate.on_border != best.on_border ? best.on_border : order(candidate) < order(best);
+}
+
+/// Takes a candidate if it is the nearest so far. Others that are as near up to rounding are kept as ties.
+void NearestSearch::offer(const NearCandidate& candidate) {
+  if (!(candidate.distance <= limit(candidate.patch) + outcome_.slack)) return;
+  if (wanted_ == Wanted::all_places) return add_place(candidate);
+  if (wanted_ == Wanted::patches) return add_patch(candidate);
+  NearCandidate& best = outcome_.best;
+  const bool wins = is_better(candidate, best);
   const NearCandidate other = wins ? best : candidate;
   if (wins) best = candidate;
   reach_ = std::min(reach_, (best.distance + outcome_.slack) * pieces_.frame().scale);

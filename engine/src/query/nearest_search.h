@@ -41,18 +41,23 @@ class NearestSearch {
   /// `path`: that of a finite point in the scene's coordinates, begun in the pieces' tree, and used up. `point`: the
   /// same in the model's. `max_distance`: at least 0, perhaps infinite.
   Outcome run(QueryTree::Path& path, const Vec3& point, double max_distance);
+  /// Finds the nearest points of the `count` nearest patches, at least 1. `best` stays empty.
+  Outcome run_patches(QueryTree::Path& path, const Vec3& point, double max_distance, std::size_t count);
   /// Finds all places of patches within a distance, each once: places of one patch count as one if they are nearer to
   /// each other than four times that. `best` stays empty.
   Outcome run_all(QueryTree::Path& path, const Vec3& point, double distance);
-  /// Returns what run_all() has found, by patches and parameters.
+  /// Returns what run_all() has found, by patches and parameters, or run_patches(), the nearest first.
   std::span<const NearCandidate> places() const { return places_; }
 
   /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
   /// search ends before.
   static constexpr int max_parts = 2000;
-  /// The work that a piece gets, and all together, before each piece was looked at. Where the surface is as far away
-  /// along a curve, as from the axis of a rotation, pieces that are not the nearest would take all of it.
-  static constexpr int first_parts = 48, max_first_parts = max_parts / 4;
+  /// The work that a piece gets before each piece was looked at; together they get a quarter of all. Where the surface
+  /// is as far away along a curve, as from the axis of a rotation, pieces that are not the nearest would take all of it.
+  static constexpr int first_parts = 48;
+  /// The limit of work is larger if several patches are wanted.
+  static constexpr int parts_per_patch = 64;
+  static constexpr std::size_t max_patches = 1 << 20;
 
  private:
   friend class QueryTree;
@@ -71,7 +76,10 @@ class NearestSearch {
   void start(const Vec3& point, double max_distance);
   void search(QueryTree::Path& path);
   void polish(NearCandidate& candidate) const;
+  double limit(std::uint32_t patch) const;
+  bool is_better(const NearCandidate& candidate, const NearCandidate& best) const;
   void add_place(const NearCandidate& candidate);
+  void add_patch(const NearCandidate& candidate);
   bool is_same_place(const NearCandidate& a, const NearCandidate& b) const;
   void push(const QueryPiece& piece, const PatchPart& area);
   template <class T>
@@ -97,8 +105,11 @@ class NearestSearch {
   Vec3 scene_point_;  ///< in the scene's coordinates
   double reach_ = 0;  ///< in the scene's coordinates: pieces beyond are of no use
   Outcome outcome_;
-  bool finds_all_ = false;
-  std::vector<NearCandidate> places_, found_places_;  ///< if all are wanted
+  enum class Wanted : std::uint8_t { nearest, all_places, patches };
+  Wanted wanted_ = Wanted::nearest;
+  std::size_t patches_wanted_ = 0;
+  int parts_allowed_ = max_parts;
+  std::vector<NearCandidate> places_, found_places_;  ///< unless only the nearest is wanted
   static constexpr std::size_t max_ties = 4;
   std::array<NearCandidate, max_ties> ties_;
   std::size_t tie_count_ = 0;

@@ -9,6 +9,23 @@
 #include "tessera/model.h"
 
 namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// Checks the arguments of a batch with `count` results for each point. Errors: those of PointScene::nearest_patches().
+Status check_batch(std::size_t points, std::size_t count, std::size_t results, double max_distance) {
+  constexpr std::size_t max_count = std::size_t{1} << 20;
+  if (!(count >= 1 && count <= max_count))
+    return {StatusCode::invalid_argument,
+            "the patches for a point must be from 1 to 2^20, found " + std::to_string(count)};
+  if (results / count < points)
+    return {StatusCode::buffer_too_small,
+            counted(points, "point") + (count == 1 ? "" : " with " + counted(count, "patch", "patches") + " each") +
+                ", but room for " + counted(results, "result")};
+  if (max_distance >= 0) return {};
+  return {StatusCode::invalid_argument, "the largest distance must be at least 0, found " + text(max_distance)};
+}
+
+}  // namespace
 
 Status PointScene::Impl::done(Status status) {
   ready_ = status.ok();
@@ -77,6 +94,19 @@ NearestPoint PointScene::Impl::nearest(const Vec3& point, double max_distance, N
   return out;
 }
 
+void PointScene::Impl::nearest_patches(const Vec3& point, double max_distance, NearestSearch& search,
+                                       QueryTree::Path& path, std::span<NearestPoint> nearest) const {
+  NearestPoint none;
+  if (!is_valid(point)) {
+    none.kind = NearestKind::invalid_point;
+    return std::ranges::fill(nearest, none), void();
+  }
+  const NearestSearch::Outcome found = search.run_patches(path, point, max_distance, nearest.size());
+  none.flags.certified = found.complete, none.rounding = found.slack;
+  for (std::size_t k = 0; k < nearest.size(); ++k)
+    nearest[k] = k < search.places().size() ? point_of(search.places()[k], found) : none;
+}
+
 void PointScene::Impl::append_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
                                      std::vector<NearestPoint>& places) const {
   if (!is_valid(point)) return;
@@ -115,17 +145,26 @@ Result<PointScene> PointScene::make(const Model& model, const Execution& executi
 Status PointScene::nearest(std::span<const Vec3> points, std::span<NearestPoint> nearest, double max_distance,
                            const Execution& execution) const {
   return guarded([&]() -> Status {
-    if (nearest.size() < points.size())
-      return {StatusCode::buffer_too_small,
-              counted(points.size(), "point") + ", but room for " + counted(nearest.size(), "result")};
-    if (!(max_distance >= 0))
-      return {StatusCode::invalid_argument, "the largest distance must be at least 0, found " + text(max_distance)};
+    if (Status status = check_batch(points.size(), 1, nearest.size(), max_distance); !status.ok()) return status;
     if (Status status = impl_->check_fresh(); !status.ok()) return status;
     const auto at = [&](std::size_t k) { return points[k]; };
     return impl_->for_points(points.size(), execution, at,
                              [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
                                nearest[k] = impl_->nearest(points[k], max_distance, search, path);
                              });
+  });
+}
+
+Status PointScene::nearest_patches(std::span<const Vec3> points, std::size_t count, std::span<NearestPoint> nearest,
+                                   double max_distance, const Execution& execution) const {
+  return guarded([&]() -> Status {
+    if (Status status = check_batch(points.size(), count, nearest.size(), max_distance); !status.ok()) return status;
+    if (Status status = impl_->check_fresh(); !status.ok()) return status;
+    const auto at = [&](std::size_t k) { return points[k]; };
+    return impl_->for_points(
+        points.size(), execution, at, [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
+          impl_->nearest_patches(points[k], max_distance, search, path, nearest.subspan(k * count, count));
+        });
   });
 }
 

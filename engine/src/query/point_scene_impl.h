@@ -33,6 +33,9 @@ class PointScene::Impl {
   Status for_points(std::size_t count, const Execution& execution, const Position& position, const Find& find) const;
   /// Finds a nearest point; `search` and `path` are of this scene.
   NearestPoint nearest(const Vec3& point, double max_distance, NearestSearch& search, QueryTree::Path& path) const;
+  /// Fills `nearest` with the nearest points of as many patches.
+  void nearest_patches(const Vec3& point, double max_distance, NearestSearch& search, QueryTree::Path& path,
+                       std::span<NearestPoint> nearest) const;
   /// Appends all places within a distance.
   void append_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
                      std::vector<NearestPoint>& places) const;
