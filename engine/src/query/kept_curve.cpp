@@ -187,7 +187,7 @@ class CurveSearch {
 
 CurvePoint point_of(const CurveGround& ground, const KeptCurve& curve, double t) {
   const PlanePoint at = plane_point(curve.piece->curve, *ground.domain, t);
-  const FirstOrder point = first_order(*ground.patch, at.at.u, at.at.v, ground.frame->centre);
+  const FirstOrder point = first_order(*ground.patch, ground.frame->centre, *ground.kernels, at.at.u, at.at.v);
   return {at.at.u, at.at.v, point.position, at.by_t.u * point.du + at.by_t.v * point.dv};
 }
 

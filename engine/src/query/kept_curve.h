@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "kernel/ray/ray_kernels.h"
 #include "query/nearest_foot.h"
 #include "query/query_tree.h"
 #include "query/range.h"
@@ -27,11 +28,12 @@ struct CurvePoint {
   Vec3 position, derivative;
 };
 
-/// Places of curves: the patch and its part of the surface's domain.
+/// Places of curves: the patch, its part of the surface's domain, and what evaluates it.
 struct CurveGround {
   const BezierPatch* patch;
   const Domain* domain;
   const SceneFrame* frame;
+  const kernel::RayKernels* kernels;
 };
 
 CurvePoint point_of(const CurveGround& ground, const KeptCurve& curve, double t);

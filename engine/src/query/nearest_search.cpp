@@ -36,7 +36,7 @@ void NearestSearch::search(QueryTree::Path& path) {
   deferred_.clear();
   pieces_.tree().visit_near(path, *this);
   for (const Deferred& one : deferred_)
-    if (one.lower <= reach_ && !branch(*one.piece, parts_allowed_)) outcome_.complete = false;
+    if (one.lower <= reach_ && !branch(*one.piece, one.lower, parts_allowed_)) outcome_.complete = false;
 }
 
 NearestSearch::Outcome NearestSearch::run(QueryTree::Path& path, const Vec3& point, double max_distance) {
@@ -148,11 +148,12 @@ bool NearestSearch::visit(std::uint32_t item, double distance) {
     if (is_decided(piece, piece.area, piece.facts)) return true;
     // The nearest kept point of a cut piece may lie on a curve: once that is known, few parts of the piece are left.
     const bool has_work = !piece.is_cut && outcome_.parts < parts_allowed_ / 4;
-    if (!has_work || !branch(piece, first_parts)) deferred_.push_back({&piece, distance});
+    if (!has_work || !branch(piece, distance, first_parts)) deferred_.push_back({&piece, distance});
     return true;
   }
   const KeptCurve& curve = pieces_.curves()[item - pieces.size()];
-  const CurveGround ground{&set_.patch(curve.patch), &set_.source(curve.patch).domain, &pieces_.frame()};
+  const CurveGround ground{&set_.patch(curve.patch), &set_.source(curve.patch).domain, &pieces_.frame(),
+                           &pieces_.kernels()};
   const Foot foot =
       nearest_foot(ground, curve, point_, limit(curve.patch) + outcome_.slack, parts_allowed_, outcome_.parts);
   if (!foot.converged) outcome_.complete = false;
@@ -189,35 +190,47 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   return foot.converged;
 }
 
-/// Halves a piece until each part is decided, or cannot be nearer by more than rounding. Returns whether `parts`
-/// sufficed, and what is left of parts_allowed_.
-bool NearestSearch::branch(const QueryPiece& piece, int parts) {
-  const double scale = pieces_.frame().scale;
+/// Halves a piece, at least `lower` away, until each part is decided, or cannot be nearer by more than rounding. Returns
+/// whether `parts` sufficed, and what is left of parts_allowed_.
+bool NearestSearch::branch(const QueryPiece& piece, double lower, int parts) {
   const int most_parts = std::min(parts_allowed_, outcome_.parts + parts);
+  const double rounding = 4 * outcome_.slack * pieces_.frame().scale;
   stack_.clear();
-  push(piece, piece.area);
+  if (is_cut_away(piece, piece.area) || !may_be_nearer(piece, piece.area, lower)) return true;
+  if (++outcome_.parts >= most_parts) return false;
+  halve(piece, piece.area, piece.facts);
   while (!stack_.empty()) {
     const Part part = stack_.back();
     stack_.pop_back();
     if (part.lower > reach_ || is_decided(piece, part.area, part.bounds.facts)) continue;
-    const PatchPart& area = part.area;
-    const double middle_u = 0.5 * (area.u0 + area.u1), middle_v = 0.5 * (area.v0 + area.v1);
-    constexpr int few_steps = 3;  // towards a good limit: where the part's nearest point lies is not clear
-    offer(piece,
-          nearest_foot(ground(piece.patch), point_, area, middle_u, middle_v, infinity, outcome_.slack, few_steps));
-    // All points of the part are as near, up to rounding, as the nearest one, or as each other.
+    if (!may_be_nearer(piece, part.area, part.lower)) continue;
+    // All points of the part are as near as each other, up to rounding.
     const bool all = wanted_ == Wanted::all_places;
-    const double rounding = outcome_.slack * scale, near = limit(piece.patch) * scale;
-    const double point_size = all ? std::max(4 * rounding, near) : 4 * rounding;
-    if (part.lower >= near - (all ? 0 : rounding) || part.bounds.box.diagonal() <= point_size) continue;
+    const double point_size = all ? std::max(rounding, limit(piece.patch) * pieces_.frame().scale) : rounding;
+    if (part.bounds.box.diagonal() <= point_size) continue;
     if (++outcome_.parts >= most_parts || stack_.size() + 2 > max_stack) return false;
-    const auto [lower, upper] = halves(area, part.bounds.facts);
-    push(piece, lower), push(piece, upper);
-    const std::size_t count = stack_.size();
-    if (count >= 2 && stack_[count - 2].lower < stack_[count - 1].lower)
-      std::swap(stack_[count - 2], stack_[count - 1]);
+    halve(piece, part.area, part.bounds.facts);
   }
   return true;
+}
+
+/// Moves the limit by a few steps from the middle of an area, since where its nearest point lies is not clear. Returns
+/// whether a point of the area, at least `lower` away, can still be nearer by more than rounding.
+bool NearestSearch::may_be_nearer(const QueryPiece& piece, const PatchPart& area, double lower) {
+  constexpr int few_steps = 3;
+  offer(piece, nearest_foot(ground(piece.patch), point_, area, 0.5 * (area.u0 + area.u1), 0.5 * (area.v0 + area.v1),
+                            infinity, outcome_.slack, few_steps));
+  const double rounding = wanted_ == Wanted::all_places ? 0 : outcome_.slack;
+  return lower < (limit(piece.patch) - rounding) * pieces_.frame().scale;
+}
+
+/// Puts the halves of an area on the stack, the nearer one on top.
+template <class T>
+void NearestSearch::halve(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts) {
+  const auto [first, second] = halves(area, facts);
+  push(piece, first), push(piece, second);
+  const std::size_t count = stack_.size();
+  if (count >= 2 && stack_[count - 2].lower < stack_[count - 1].lower) std::swap(stack_[count - 2], stack_[count - 1]);
 }
 
 /// Puts a part on the stack, unless loops cut it away or it is too far.

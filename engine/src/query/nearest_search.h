@@ -72,7 +72,10 @@ class NearestSearch {
     return {&set_.patch(patch), pieces_.frame().centre, &pieces_.kernels().nearest};
   }
   bool visit(std::uint32_t item, double distance);
-  bool branch(const QueryPiece& piece, int parts);
+  bool branch(const QueryPiece& piece, double lower, int parts);
+  bool may_be_nearer(const QueryPiece& piece, const PatchPart& area, double lower);
+  template <class T>
+  void halve(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts);
   void start(const Vec3& point, double max_distance);
   void search(QueryTree::Path& path);
   void polish(NearCandidate& candidate) const;

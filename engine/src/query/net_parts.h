@@ -49,22 +49,25 @@ class NetParts {
 
 /// Whether a part is better halved along u: there it is much longer, or its derivatives turn more. Towards a pole,
 /// parts that are as long as wide turn as much around it, however small they are.
-inline bool halves_u(const PieceFacts<double>& f) {
+template <class T>
+bool halves_u(const PieceFacts<T>& f) {
   constexpr double much = 4, least_turn = 0.1, no_bound = 1e20;
-  const auto size = [](const double(&bend)[3][2]) {
+  const auto size = [](const T(&bend)[3][2]) {
     double sum = 0;
-    for (const auto& [low, high] : bend) sum += std::max(-low, high);
+    for (const auto& [low, high] : bend) sum += double(std::max(-low, high));
     return sum;
   };
-  const double xy = f.bend_xy[0] + f.bend_xy[1] + f.bend_xy[2];
-  const double by_u = f.length_u * (size(f.bend_xx) + xy), by_v = f.length_v * (size(f.bend_yy) + xy);
-  const double turn = std::max(by_u, by_v), longer = std::max(f.length_u, f.length_v);
-  const bool by_length = longer > much * std::min(f.length_u, f.length_v) || turn < least_turn || xy > no_bound;
-  return by_length ? f.length_u >= f.length_v : by_u >= by_v;
+  const double xy = double(f.bend_xy[0]) + double(f.bend_xy[1]) + double(f.bend_xy[2]);
+  const double length_u = double(f.length_u), length_v = double(f.length_v);
+  const double by_u = length_u * (size(f.bend_xx) + xy), by_v = length_v * (size(f.bend_yy) + xy);
+  const double turn = std::max(by_u, by_v), longer = std::max(length_u, length_v);
+  const bool by_length = longer > much * std::min(length_u, length_v) || turn < least_turn || xy > no_bound;
+  return by_length ? length_u >= length_v : by_u >= by_v;
 }
 
 /// Returns the halves of a part.
-inline std::pair<PatchPart, PatchPart> halves(const PatchPart& area, const PieceFacts<double>& facts) {
+template <class T>
+std::pair<PatchPart, PatchPart> halves(const PatchPart& area, const PieceFacts<T>& facts) {
   PatchPart lower = area, upper = area;
   if (halves_u(facts))
     lower.u1 = upper.u0 = 0.5 * (area.u0 + area.u1);

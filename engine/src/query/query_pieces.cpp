@@ -69,7 +69,7 @@ void QueryPieces::make_pieces(const SetView& set, std::uint32_t patch, PatchItem
 /// Cuts the curves of a patch until they are nearly straight.
 void QueryPieces::make_curves(const SetView& set, std::uint32_t patch, PatchItems& items) const {
   if (!regions_.any() || !regions_.is_cut(patch)) return;
-  const CurveGround ground{&set.patch(patch), &set.source(patch).domain, &frame_};
+  const CurveGround ground{&set.patch(patch), &set.source(patch).domain, &frame_, kernels_};
   const TrimRegion::Impl& region = impl_of(regions_.of(patch));
   for (const std::uint32_t index : regions_.pieces_of(patch)) {
     std::vector<std::pair<KeptCurve, int>> left{{{&region.pieces[index], patch, 0, 1, {}}, 0}};
@@ -169,7 +169,7 @@ void QueryPieces::remake_items(const SetView& set, std::uint32_t patch, QueryTre
     pieces_[k].facts = packed(bounds.facts);
     change->boxes = {bounds.axis_box, bounds.box};
   }
-  const CurveGround ground{&of, &set.source(patch).domain, &frame_};
+  const CurveGround ground{&of, &set.source(patch).domain, &frame_, kernels_};
   for (std::size_t k = first_curve_[patch]; k < first_curve_[patch + 1]; ++k, ++change) {
     bound_bend(ground, curves_[k]);
     change->boxes = boxes_of(ground, curves_[k]);

@@ -1,6 +1,9 @@
 #include "query/second_order.h"
 
+#include <algorithm>
 #include <array>
+
+#include "ray/line/first_order.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -124,9 +127,16 @@ void rational(const BezierPatch& patch, double u_at, double v_at, const Vec3& or
 
 void second_order(const SecondOrderPatch& of, double u, double v, kernel::SecondOrder& out) {
   const BezierPatch& patch = *of.patch;
-  if (patch.is_rational()) return rational(patch, u, v, of.origin, out);
-  if (patch.degree_u() != 3 || patch.degree_v() != 3) return polynomial(patch, u, v, of.origin, out);
-  of.kernels->cubic_second_order(&patch.points().data()->x, &of.origin.x, u, v, out);
+  const double* const points = &patch.points().data()->x;
+  const int m = patch.degree_u(), n = patch.degree_v();
+  if (m == 3 && n == 3 && !patch.is_rational())
+    of.kernels->cubic_second_order(points, &of.origin.x, u, v, out);
+  else if (std::max(m, n) <= 3)
+    of.kernels->low_rational_second_order(points, kernel_weights(patch), m, n, &of.origin.x, u, v, out);
+  else if (patch.is_rational())
+    rational(patch, u, v, of.origin, out);
+  else
+    polynomial(patch, u, v, of.origin, out);
 }
 
 }}  // namespace tessera::abi_0_1

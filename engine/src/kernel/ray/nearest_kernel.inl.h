@@ -71,6 +71,63 @@ void cubic_second_order(const double* points, const double* origin, double u_at,
   duu.store(out.duu), duv.store(out.duv), dvv.store(out.dvv);
 }
 
+/// The Bernstein polynomials of a degree of 1 to 3 and two derivatives.
+struct LowSecondBasis {
+  double value[4], first[4], second[4] = {0, 0, 0, 0};
+
+  LowSecondBasis(int degree, double t) {
+    const double s = 1 - t;
+    if (degree == 1) {
+      value[0] = s, value[1] = t, first[0] = -1, first[1] = 1;
+    } else if (degree == 2) {
+      value[0] = s * s, value[1] = 2 * s * t, value[2] = t * t;
+      first[0] = -2 * s, first[1] = 2 - 4 * t, first[2] = 2 * t;
+      second[0] = 2, second[1] = -4, second[2] = 2;
+    } else {
+      const CubicBasis cubic(t);
+      const CubicBends bends(t);
+      for (int i = 0; i < 4; ++i) value[i] = cubic.value[i], first[i] = cubic.derivative[i], second[i] = bends.value[i];
+    }
+  }
+};
+
+/// Sums of homogeneous coordinates w (x - origin), w.
+struct WeightedTriple {
+  Triple point = Triple::zero();
+  double weight = 0;
+
+  void add(double b, const WeightedTriple& a) { point = Triple::fma(b, a.point, point), weight += b * a.weight; }
+};
+
+/// Uses r_ij = (A_ij - .. - w_ij r) / w (Piegl and Tiller, The NURBS Book, eq. 4.20).
+void low_rational_second_order(const double* points, const double* weights, int m, int n, const double* origin,
+                               double u_at, double v_at, SecondOrder& out) {
+  const LowSecondBasis u(m, u_at), v(n, v_at);
+  const Triple start = Triple::load(origin);
+  WeightedTriple a, au, av, auu, auv, avv;
+  for (int i = 0; i <= m; ++i) {
+    WeightedTriple row, row_v, row_vv;
+    for (int j = 0; j <= n; ++j, points += 3, ++weights) {
+      const WeightedTriple from{*weights * (Triple::load(points) - start), *weights};
+      row.add(v.value[j], from), row_v.add(v.first[j], from), row_vv.add(v.second[j], from);
+    }
+    a.add(u.value[i], row), au.add(u.first[i], row), auu.add(u.second[i], row);
+    av.add(u.value[i], row_v), auv.add(u.first[i], row_v), avv.add(u.value[i], row_vv);
+  }
+  const double inverse = 1 / a.weight;
+  const Triple position = inverse * a.point;
+  const Triple du = inverse * Triple::fma(-au.weight, position, au.point);
+  const Triple dv = inverse * Triple::fma(-av.weight, position, av.point);
+  const auto second = [&](const WeightedTriple& of, double wu, const Triple& by_u, double wv, const Triple& by_v) {
+    return inverse * Triple::fma(-of.weight, position, Triple::fma(-wu, by_u, Triple::fma(-wv, by_v, of.point)));
+  };
+  const Triple duu = second(auu, au.weight, du, au.weight, du), dvv = second(avv, av.weight, dv, av.weight, dv);
+  const Triple duv = second(auv, au.weight, dv, av.weight, du);
+  // Each writes a fourth number, over which the next one writes.
+  position.store(out.position), du.store(out.du), dv.store(out.dv);
+  duu.store(out.duu), duv.store(out.duv), dvv.store(out.dvv);
+}
+
 inline double dot3(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// With r from the point: the gradient is (r . s_u, r . s_v), the Hessian s_i . s_j + r . s_ij.

@@ -35,7 +35,10 @@ struct NearestKernels {
   /// Computes the position less `origin` and all derivatives up to the second of a bicubic patch at (u,v) in [0,1]^2,
   /// from its control points x y z x y z .., `[i][j]`.
   void (*cubic_second_order)(const double* points, const double* origin, double u, double v, SecondOrder& out);
-  /// Computes this for a point in the same coordinates.
+  /// Does this for a rational patch of degrees m, n up to 3, by the quotient rule.
+  void (*low_rational_second_order)(const double* points, const double* weights, int m, int n, const double* origin,
+                                    double u, double v, SecondOrder& out);
+  /// Computes half the squared distance for a point in the same coordinates.
   void (*half_square)(const SecondOrder& at, const double* point, HalfSquare& out);
 };
 

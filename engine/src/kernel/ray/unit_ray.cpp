@@ -25,8 +25,12 @@ constexpr const RayPacketKernels* packets = nullptr;
 }  // namespace
 
 extern const RayKernels ray_kernels = {
-    packets,     trace_polynomial_leaf, trace_rational_leaf,
-    cubic_point, low_rational_point,    {node_squares, block_squares, cubic_second_order, half_square},
+    packets,
+    trace_polynomial_leaf,
+    trace_rational_leaf,
+    cubic_point,
+    low_rational_point,
+    {node_squares, block_squares, cubic_second_order, low_rational_second_order, half_square},
 };
 
 }}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -105,10 +105,10 @@ FirstOrder first_order(const BezierPatch& patch, const Vec3& origin, const kerne
   const int m = patch.degree_u(), n = patch.degree_v();
   const auto triple = [](const double* x) { return Vec3{x[0], x[1], x[2]}; };
   kernel::RayPoint found;
-  if (std::max(m, n) <= 3 && patch.is_rational())
-    kernels.low_rational_point(points, patch.weights().data(), m, n, &origin.x, u, v, found);
-  else if (m == 3 && n == 3 && !patch.is_rational())
+  if (m == 3 && n == 3 && !patch.is_rational())
     kernels.cubic_point(points, &origin.x, u, v, found);
+  else if (std::max(m, n) <= 3)
+    kernels.low_rational_point(points, kernel_weights(patch), m, n, &origin.x, u, v, found);
   else
     return first_order(patch, u, v, origin);
   return {triple(found.position), triple(found.du), triple(found.dv)};
