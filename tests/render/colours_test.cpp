@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera::render { namespace {
 
@@ -20,6 +21,18 @@ TEST(Colours, CurvatureAndItsShareAreInverse) {
   }
   EXPECT_EQ(curvature_share(0, 3), 0);
   EXPECT_DOUBLE_EQ(curvature_share(1 / (0.25 * 0.25), 4), 0.5);  // a radius of a sixteenth of the size
+}
+
+TEST(Colours, DeviationsAreBlueInsideAndRedOutside) {
+  const Vec3 inside = deviation_colour(-1), none = deviation_colour(0), outside = deviation_colour(1);
+  EXPECT_GT(inside.z, inside.x + 0.4);
+  EXPECT_GT(outside.x, outside.z + 0.4);
+  EXPECT_NEAR(none.x, none.z, 0.05);
+  for (const double beyond : {-1.001, 1.001, -1e9, 1e9, std::nan("")})
+    EXPECT_GT(deviation_colour(beyond).z, deviation_colour(beyond).y + 0.4);  // violet or magenta
+  const auto blueness = [](const Vec3& colour) { return colour.z / (colour.x + colour.z); };
+  for (double share = -1; share < 1; share += 0.125)  // warmer and warmer
+    EXPECT_GT(blueness(deviation_colour(share)), blueness(deviation_colour(share + 0.125)));
 }
 
 TEST(Colours, TheBarShowsItsColoursAndMarks) {

@@ -51,6 +51,25 @@ TEST(MeshDistance, IsThatToTheNearestTriangle) {
   }
 }
 
+/// The corners of a needle lie on a line but for rounding, so its normal points anywhere.
+TEST(MeshDistance, NeedlesAreNoNearerThanTheirLongestEdge) {
+  Random random(6);
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 a = uniform_vector(random, -1, 1), b = uniform_vector(random, -1, 1);
+    const double share = 0.1 + 0.8 * uniform(random, 0, 1);
+    const Vec3 c = a + share * (b - a);
+    Mesh mesh;
+    mesh.positions.resize(9);
+    mesh.model_positions = {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z};
+    mesh.indices = {0, 1, 2};
+    const auto distance = render::MeshDistance::make(mesh);
+    ASSERT_TRUE(distance.ok());
+    const Vec3 normal = normalized(cross(b - a, c - a));
+    const Vec3 p = c + uniform(random, -1, 1) * (k % 2 == 0 ? normal : uniform_vector(random, -1, 1));
+    EXPECT_NEAR(distance->distance(p, 100), distance_to_segment(p, a, b), 1e-15);
+  }
+}
+
 TEST(MeshDistance, RefusesWhatIsNoMesh) {
   Random random(5);
   Mesh mesh = random_mesh(random, 4);

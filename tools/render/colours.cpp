@@ -8,15 +8,32 @@
 
 namespace tessera::render {
 
+namespace {
+
+constexpr Vec3 magenta{0.93, 0.20, 0.85}, violet{0.42, 0.10, 0.55};
+
+/// The colour at a place from 0 to 1 between equally spaced stops.
+Vec3 between(const std::array<Vec3, 5>& stops, double place) {
+  const double at = std::max(place, 0.0) * static_cast<double>(stops.size() - 1);
+  const auto before = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  const double t = at - static_cast<double>(before);
+  return (1 - t) * stops[before] + t * stops[before + 1];
+}
+
+}  // namespace
+
 Vec3 error_colour(double share) {
   // Each is lighter or warmer than the one before, so that the order is visible.
   constexpr std::array<Vec3, 5> stops{
       Vec3{0.10, 0.14, 0.38}, {0.13, 0.45, 0.60}, {0.36, 0.72, 0.42}, {0.96, 0.83, 0.28}, {0.80, 0.16, 0.12}};
-  if (!(share <= 1)) return {0.93, 0.20, 0.85};
-  const double at = std::max(share, 0.0) * (stops.size() - 1);
-  const auto before = std::min(static_cast<std::size_t>(at), stops.size() - 2);
-  const double t = at - static_cast<double>(before);
-  return (1 - t) * stops[before] + t * stops[before + 1];
+  return share <= 1 ? between(stops, share) : magenta;
+}
+
+Vec3 deviation_colour(double share) {
+  constexpr std::array<Vec3, 5> stops{
+      Vec3{0.10, 0.20, 0.62}, {0.30, 0.62, 0.85}, {0.86, 0.88, 0.84}, {0.97, 0.74, 0.30}, {0.80, 0.16, 0.12}};
+  if (share < -1) return violet;
+  return share <= 1 ? between(stops, 0.5 * (share + 1)) : magenta;
 }
 
 Vec3 curvature_colour(double share) {

@@ -11,6 +11,8 @@ namespace tessera::render {
 
 /// A share of the largest error, from 0 (deep blue) over green and yellow to 1 (red). Above 1: magenta.
 Vec3 error_colour(double share);
+/// A share of the largest deviation to either side: -1 (blue) over 0 (grey) to 1 (red). Beyond: violet and magenta.
+Vec3 deviation_colour(double share);
 
 /// Gaussian curvature as a share of full colour: -1 saddles (blue), 0 flat (grey), 1 domes (red).
 Vec3 curvature_colour(double share);

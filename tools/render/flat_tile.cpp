@@ -35,7 +35,9 @@ Vec3 surface_colour(const Hit& hit, const View& view) {
   const Settings& settings = view.settings;
   if (settings.shade == Shade::uv) return uv_colour(hit);
   if (settings.shade == Shade::curvature) return hit_curvature_colour(view.scene, view.size, hit);
-  return settings.shade == Shade::error ? error_colour(settings.error(hit.position)) : patch_colour(hit.patch);
+  if (settings.shade != Shade::error) return patch_colour(hit.patch);
+  const double share = settings.error(hit.position);
+  return settings.signed_error ? deviation_colour(share) : error_colour(share);
 }
 
 /// Grey or the model's colour, by a light above the eye.

@@ -6,6 +6,15 @@
 
 namespace tessera::render {
 
+Vec3 position_of(const Mesh& mesh, std::size_t vertex) {
+  if (!mesh.model_positions.empty()) {
+    const double* const p = &mesh.model_positions[3 * vertex];
+    return {p[0], p[1], p[2]};
+  }
+  const float* const p = &mesh.positions[3 * vertex];
+  return mesh.origin + Vec3{p[0], p[1], p[2]};
+}
+
 Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 along = b - a;
   const double length2 = dot(along, along);
@@ -28,16 +37,22 @@ double squared_distance(const Vec3& p, const Box3& box) {
   return sum;
 }
 
-/// The foot on the plane if it lies inside the triangle, otherwise the nearest point of the edges.
+/// The nearest of the foot on the plane, if it lies inside the triangle, and of the nearest points of the edges. Each
+/// is a point of the triangle up to rounding, of needles too: no distance is too small.
+///
+/// Source: the foot's barycentric coordinates, Ericson, Real-Time Collision Detection, section 3.4.
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = cross(b - a, c - a);
+  const std::array<Vec3, 3> on_edges{nearest_on_segment(p, a, b), nearest_on_segment(p, b, c),
+                                     nearest_on_segment(p, c, a)};
+  const auto squared = [&](const Vec3& q) { return dot(q - p, q - p); };
+  const Vec3 nearest = *std::ranges::min_element(on_edges, {}, squared);
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, normal = cross(ab, ac);
   const double size2 = dot(normal, normal);
-  if (size2 > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
-      dot(cross(a - c, p - c), normal) >= 0)
-    return p - (dot(p - a, normal) / size2) * normal;
-  const std::array<Vec3, 3> points{nearest_on_segment(p, a, b), nearest_on_segment(p, b, c),
-                                   nearest_on_segment(p, c, a)};
-  return *std::ranges::min_element(points, {}, [&](const Vec3& q) { return dot(q - p, q - p); });
+  if (!(size2 > 0)) return nearest;
+  const double of_b = dot(cross(ap, ac), normal) / size2, of_c = dot(cross(ab, ap), normal) / size2;
+  if (!(of_b >= 0 && of_c >= 0 && of_b + of_c <= 1)) return nearest;
+  const Vec3 foot = a + of_b * ab + of_c * ac;
+  return squared(foot) < squared(nearest) ? foot : nearest;
 }
 
 }  // namespace
@@ -46,6 +61,7 @@ Result<MeshDistance> MeshDistance::make(const Mesh& mesh) {
   const std::size_t vertices = mesh.vertex_count();
   if (mesh.indices.empty()) return Status(StatusCode::invalid_argument, "the mesh has no triangle");
   MeshDistance made;
+  made.triangles_.reserve(mesh.triangle_count());
   for (std::size_t k = 0; k < mesh.triangle_count(); ++k) {
     std::array<Vec3, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -54,8 +70,7 @@ Result<MeshDistance> MeshDistance::make(const Mesh& mesh) {
         return Status(StatusCode::invalid_argument, "triangle " + std::to_string(k) + " has vertex " +
                                                         std::to_string(vertex) + ", there are " +
                                                         std::to_string(vertices));
-      const float* p = &mesh.positions[3 * vertex];
-      corners[c] = mesh.origin + Vec3{double(p[0]), double(p[1]), double(p[2])};
+      corners[c] = position_of(mesh, vertex);
       if (!is_finite(corners[c]))
         return Status(StatusCode::non_finite, "vertex " + std::to_string(vertex) + " is not finite");
     }

@@ -10,15 +10,6 @@
 namespace tessera::render {
 namespace {
 
-Vec3 position(const Mesh& mesh, std::size_t vertex) {
-  if (!mesh.model_positions.empty()) {
-    const double* const p = &mesh.model_positions[3 * vertex];
-    return {p[0], p[1], p[2]};
-  }
-  const float* const p = &mesh.positions[3 * vertex];
-  return mesh.origin + Vec3{p[0], p[1], p[2]};
-}
-
 Vec3 normal_of(const Mesh& mesh, std::size_t vertex) {
   if (mesh.normals.size() != mesh.positions.size()) return {};
   const float* const n = &mesh.normals[3 * vertex];
@@ -34,7 +25,7 @@ Status check_indices(const std::vector<std::uint32_t>& indices, std::size_t vert
 
 Status check_positions(const Mesh& mesh) {
   for (std::size_t k = 0; k < mesh.vertex_count(); ++k)
-    if (!is_finite(position(mesh, k)))
+    if (!is_finite(position_of(mesh, k)))
       return {StatusCode::non_finite, "vertex " + std::to_string(k) + " is not finite"};
   return {};
 }
@@ -62,7 +53,7 @@ void MeshPatches::add_triangle(const Mesh& mesh, const std::array<std::uint32_t,
                                const std::array<bool, 3>& is_edge, std::uint32_t patch) {
   Triangle triangle{{}, {}, is_edge, patch};
   for (std::size_t k = 0; k < 3; ++k) {
-    triangle.corners[k] = position(mesh, corners[k]);
+    triangle.corners[k] = position_of(mesh, corners[k]);
     triangle.normals[k] = normal_of(mesh, corners[k]);
   }
   const auto& [a, b, c] = triangle.corners;

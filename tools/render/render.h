@@ -50,6 +50,7 @@ struct Settings {
   /// For Shade::error: the distance at a point of the surface, as a share of the largest one that colours distinguish;
   /// above 1 is magenta. Called from any number of threads.
   std::function<double(const Vec3&)> error = {};
+  bool signed_error = false;  ///< for Shade::error: whether shares run from -1 to 1, in the colours of deviations
   /// The unit normal to shade at a hit; empty: the surface's. Called from any number of threads.
   std::function<Vec3(const Hit&)> normal = {};
   /// The colour at a hit in sRGB, for Shade::lambert and Shade::clay; without a value: the shade's own. Called from any
