@@ -10,7 +10,7 @@
 #include "console/terminal.h"
 #include "line/arguments.h"
 #include "picture/raycast.h"
-#include "render/camera.h"
+#include "picture/view_options.h"
 #include "table/csv.h"
 #include "tessera/io.h"
 
@@ -81,17 +81,6 @@ Status run_raycast(const Job& job, const RaycastOptions& options, const CommonOp
   return status.ok() ? scene->loaded.status() : status;
 }
 
-render::Camera parse_camera(const std::string& text) {
-  const std::vector<double> n = parse_numbers("--camera", text, 7, "ex,ey,ez,tx,ty,tz,fovdeg");
-  render::Camera camera;
-  camera.eye = {n[0], n[1], n[2]};
-  camera.target = {n[3], n[4], n[5]};
-  camera.fov_degrees = n[6];
-  const Status status = render::check(camera);
-  if (!status.ok()) throw UsageError("--camera", status.message());
-  return camera;
-}
-
 constexpr const char* picture_extension = ".png";
 
 std::string fault_of_picture(const std::string& path) {
@@ -113,24 +102,14 @@ void make_draft(render::Settings& settings) {
 
 /// Adds the options that make sense only with a picture, and returns them.
 std::vector<const Option*> add_picture_options(Command& command, RaycastOptions& options) {
-  const auto set_size = [&options](const std::string& text) {
-    const Extent size = parse_extent("--size", text, 1, 16384);
-    options.settings.width = size.first;
-    options.settings.height = size.second;
-    options.sized = true;
-  };
   const auto set_shade = [&options](const std::string& text) {
     options.settings.shade = shades.at(text);
     options.shaded = true;
     if (options.settings.shade == render::Shade::error) options.settings.samples = 2;  // distances are slow
   };
-  const auto set_up = [&options](const std::string& text) {
-    options.settings.up = text == "x" ? render::Up::x : text == "y" ? render::Up::y : render::Up::z;
-  };
   const auto set_quality = [&options](const std::string& text) {
     if (text == "draft") make_draft(options.settings);
   };
-  const auto set_camera = [&options](const std::string& text) { options.settings.camera = parse_camera(text); };
   command.begin_group("Pictures");
   Option& picture =
       command
@@ -140,28 +119,26 @@ std::vector<const Option*> add_picture_options(Command& command, RaycastOptions&
                     options.picture)
           .check(fault_of_name)
           .check(fault_of_picture);
-  return {&picture,
-          &command.add("--size", "WxH", "Pixels of the picture, 1 to 16384 each [1280x800; the terminal's]", set_size),
-          &command.add("--camera", "EX,EY,EZ,TX,TY,TZ,FOV",
-                       "Eye, target, field of view in degrees over the picture's shorter side [a view from above that "
-                       "fits the model]",
-                       set_camera),
-          &command.add_choice("--up", {"x", "y", "z"}, "The axis that points up [z]", set_up),
-          &command.add_choice("--shade", {"lambert", "normals", "uv", "patch", "error", "curvature", "clay", "steps"},
-                              "How surfaces are coloured [lambert]", set_shade),
-          &command.add_flag("--edges", "Draw lines where surfaces end or meet; on meshes, the edges of triangles",
-                            options.edges),
-          &command.add_choice("--quality", {"draft", "final"},
-                              "A draft has fewer rays per pixel and simple light; it takes a fifth of the time "
-                              "[final; draft for several files]",
-                              set_quality),
-          &command.add_flag("--terminal", "Draw on standard output, even if it is no terminal", options.terminal)
-               .exclude(picture),
-          &command
-               .add_choice("--colour,--color", {"auto", "always", "never"},
-                           "Colours in the terminal; \"always\" also in a pipe [auto]",
-                           [&options](const std::string& text) { options.colour = text; })
-               .exclude(picture)};
+  std::vector<const Option*> added = add_picture_view(command, "1280x800; the terminal's", options.settings);
+  added.insert(
+      added.end(),
+      {&command.add_choice("--shade", {"lambert", "normals", "uv", "patch", "error", "curvature", "clay", "steps"},
+                           "How surfaces are coloured [lambert]", set_shade),
+       &command.add_flag("--edges", "Draw lines where surfaces end or meet; on meshes, the edges of triangles",
+                         options.edges),
+       &command.add_choice("--quality", {"draft", "final"},
+                           "A draft has fewer rays per pixel and simple light; it takes a fifth of the time "
+                           "[final; draft for several files]",
+                           set_quality),
+       &command.add_flag("--terminal", "Draw on standard output, even if it is no terminal", options.terminal)
+            .exclude(picture),
+       &command
+            .add_choice("--colour,--color", {"auto", "always", "never"},
+                        "Colours in the terminal; \"always\" also in a pipe [auto]",
+                        [&options](const std::string& text) { options.colour = text; })
+            .exclude(picture)});
+  added.insert(added.begin(), &picture);
+  return added;
 }
 
 /// Adds --rays and --hits, which belong together and exclude pictures.
@@ -258,7 +235,8 @@ void add_raycast(Command& tool, Session& session) {
     check_input(options->load);
     check_options(command, *options);
     if (options->team) check_team(*options);
-    if (auto& camera = options->settings.camera) camera->up = render::from_z_up({0, 0, 1}, options->settings.up);
+    turn_camera(options->settings);
+    options->sized = command.option("--size").count > 0;
     const Plan plan = plan_raycast(*options, session.common);
     const bool is_picture = options->rays.empty() && !is_exr(format_path(options->picture, options->format));
     if (plan.jobs.size() > 1 && is_picture && command.option("--quality").count == 0) {
