@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "support/outlines.h"
 #include "support/trimmed_proof.h"
+#include "tessera/model.h"
 #include "tessera/nearest_points.h"
 
 namespace tessera::test { namespace {
@@ -84,6 +86,25 @@ TEST(NearestTrimmed, NoKeptPointIsNearer) {
     EXPECT_EQ(out.beaten, 0u) << out.worst;
     EXPECT_GE(double(out.certified), 0.99 * double(out.points));
     EXPECT_GT(out.on_border, out.points / 20);
+  }
+}
+
+/// A target of rings around a disc, and points at its middle, from which each circle is equally far all around. The
+/// circles must not use up the work before the disc is looked at.
+TEST(NearestTrimmed, CirclesDoNotHideTheirMiddle) {
+  const Vec3 corners[] = {{0, 0, 0}, {0, 10, 0}, {10, 0, 0}, {10, 10, 0}};
+  std::vector<TrimLoop> loops;
+  for (const double radius : {4.8, 4.0, 3.0, 2.0, 1.0})
+    loops.push_back(round_outline(0.5, 0.5, radius / 10, false).loop);
+  Model model;
+  model.surfaces.push_back({.name = std::string("target"),
+                            .surface = value_of(BezierPatch::polynomial(1, 1, corners)),
+                            .trims = std::move(loops)});
+  const PointScene scene = value_of(PointScene::make(model));
+  for (const Vec3& point : {Vec3{5, 5, 0}, {5, 5, 0.25}, {5, 5 + 1e-9, 0}, {5, 4.75, 1e-12}}) {
+    const NearestPoint found = scene.nearest(point);
+    EXPECT_NEAR(found.distance, point.z, 1e-15);
+    EXPECT_TRUE(found.flags.certified) << point.y << ' ' << point.z;
   }
 }
 

@@ -36,7 +36,7 @@ void NearestSearch::search(QueryTree::Path& path) {
   deferred_.clear();
   pieces_.tree().visit_near(path, *this);
   for (const Deferred& one : deferred_)
-    if (one.lower <= reach_ && !branch(*one.piece, one.lower, parts_allowed_)) outcome_.complete = false;
+    if (one.lower <= reach_ && !search_item(one.item, one.lower, parts_allowed_)) outcome_.complete = false;
 }
 
 NearestSearch::Outcome NearestSearch::run(QueryTree::Path& path, const Vec3& point, double max_distance) {
@@ -142,23 +142,32 @@ bool NearestSearch::visit(std::uint32_t item, double distance) {
     return false;
   }
   const std::span<const QueryPiece> pieces = pieces_.pieces();
+  bool has_work = outcome_.parts < parts_allowed_ / 4;
   if (item < pieces.size()) {
     const QueryPiece& piece = pieces[item];
     ++outcome_.parts;
     if (is_decided(piece, piece.area, piece.facts)) return true;
     // The nearest kept point of a cut piece may lie on a curve: once that is known, few parts of the piece are left.
-    const bool has_work = !piece.is_cut && outcome_.parts < parts_allowed_ / 4;
-    if (!has_work || !branch(piece, distance, first_parts)) deferred_.push_back({&piece, distance});
-    return true;
+    has_work &= !piece.is_cut;
   }
-  const KeptCurve& curve = pieces_.curves()[item - pieces.size()];
+  if (!has_work || !search_item(item, distance, first_parts)) deferred_.push_back({item, distance});
+  return true;
+}
+
+/// Searches a piece or a curve, at least `lower` away, with at most `parts` of work. Returns whether that sufficed.
+bool NearestSearch::search_item(std::uint32_t item, double lower, int parts) {
+  const std::span<const QueryPiece> pieces = pieces_.pieces();
+  return item < pieces.size() ? branch(pieces[item], lower, parts)
+                              : search_curve(pieces_.curves()[item - pieces.size()], parts);
+}
+
+bool NearestSearch::search_curve(const KeptCurve& curve, int parts) {
   const CurveGround ground{&set_.patch(curve.patch), &set_.source(curve.patch).domain, &pieces_.frame(),
                            &pieces_.kernels()};
-  const Foot foot =
-      nearest_foot(ground, curve, point_, limit(curve.patch) + outcome_.slack, parts_allowed_, outcome_.parts);
-  if (!foot.converged) outcome_.complete = false;
+  const Foot foot = nearest_foot(ground, curve, point_, limit(curve.patch) + outcome_.slack,
+                                 std::min(parts_allowed_, outcome_.parts + parts), outcome_.parts);
   if (!foot.is_farther) offer({curve.patch, foot.u, foot.v, foot.position, foot.distance, true, true, true});
-  return true;
+  return foot.converged;
 }
 
 /// Finds the nearest point of an area if its place is clear: at a corner, or on a side or within, where the distance is

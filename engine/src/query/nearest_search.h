@@ -52,8 +52,9 @@ class NearestSearch {
   /// The limit of work for one point. Where the surface is as far away over an area, as at the middle of a sphere, no
   /// search ends before.
   static constexpr int max_parts = 2000;
-  /// The work that a piece gets before each piece was looked at; together they get a quarter of all. Where the surface
-  /// is as far away along a curve, as from the axis of a rotation, pieces that are not the nearest would take all of it.
+  /// The work that a piece or a curve gets before each of them was looked at; together they get a quarter of all. Where
+  /// the surface is as far away along a curve, as from the axis of a rotation or the middle of an arc, those that are
+  /// not the nearest would take all of it.
   static constexpr int first_parts = 48;
   /// The limit of work is larger if several patches are wanted.
   static constexpr int parts_per_patch = 64;
@@ -76,6 +77,8 @@ class NearestSearch {
   bool may_be_nearer(const QueryPiece& piece, const PatchPart& area, double lower);
   template <class T>
   void halve(const QueryPiece& piece, const PatchPart& area, const PieceFacts<T>& facts);
+  bool search_curve(const KeptCurve& curve, int parts);
+  bool search_item(std::uint32_t item, double lower, int parts);
   void start(const Vec3& point, double max_distance);
   void search(QueryTree::Path& path);
   void polish(NearCandidate& candidate) const;
@@ -98,9 +101,9 @@ class NearestSearch {
   NetParts nets_;
   std::uint32_t patch_of_nets_ = no_id;
   std::vector<Part> stack_;
-  /// A piece that is not decided as a whole: a cut one, or one that took more than first_parts.
+  /// A piece or a curve that is not decided yet: a cut piece, or one that took more than first_parts.
   struct Deferred {
-    const QueryPiece* piece;
+    std::uint32_t item;
     double lower;  ///< bounds its distance, in the scene's coordinates
   };
   std::vector<Deferred> deferred_;
