@@ -89,6 +89,16 @@ void fill_commands(Table& table) {
   tool.row(2, {"measure"});
   for (const char* const accuracy : {"0", "-1", "nan", "1e-15", "1", "x"})
     tool.row(2, {"measure", "teapot.bpt", "--accuracy", accuracy});
+  table.of("tessera compare MODEL MESH");
+  tool.row(2, {"compare", "teapot.bpt"});
+  tool.row(1, {"compare", "teapot.bpt", "missing.ply"});
+  tool.row(2, {"compare", "teapot.bpt", "a.ply", "-o", "a.gif"});
+  tool.row(2, {"compare", "teapot.bpt", "a.ply", "--size", "8x8"});
+  tool.row(2, {"compare", "teapot.bpt", "a.ply", "--scale", "2", "--mesh-unit", "mm"});
+  for (const char* const length : {"0", "-1", "nan", "x"}) {
+    tool.row(2, {"compare", "teapot.bpt", "a.ply", "--tolerance", length});
+    tool.row(2, {"compare", "teapot.bpt", "a.ply", "--spacing", length});
+  }
 }
 
 void fill_model_commands(Table& table) {

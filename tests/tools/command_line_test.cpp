@@ -69,6 +69,7 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
       {"tessellate", {"MODEL", "--output", "--grid", "--json"}},
       {"raycast", {"MODEL", "--output", "--size", "--shade", "--camera", "--rays", "--hits", "--mode", "--all-hits"}},
       {"check", {"MESH", "--json"}},
+      {"compare", {"MODEL", "MESH", "--tolerance", "--samples", "--spacing", "--mesh-unit", "--output", "--json"}},
       {"measure", {"MODEL", "--accuracy", "--inertia", "--enclosed", "--require-solids", "--json"}}};
   for (const auto& [command, options] : commands) {
     const std::string help = output_of({command, "--help"});
@@ -78,10 +79,11 @@ TEST_F(CommandLine, EveryOptionIsInTheHelp) {
 }
 
 TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
-  expect_failure({}, 2,
-                 "expected a command (info, eval, tessellate, raycast, convert, project, section, check, measure, "
-                 "completion, man or "
-                 "help), found none");
+  expect_failure(
+      {}, 2,
+      "expected a command (info, eval, tessellate, raycast, convert, project, section, check, compare, measure, "
+      "completion, man or "
+      "help), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");
   expect_failure({"info", teapot, "--colour"}, 2, "--colour");

@@ -183,6 +183,7 @@ TEST_F(Info, ThePageOfJsonIsWhole) {
       {"raycast -o", {"raycast", teapot, "--size", "8x8", "--shade", "error", "-o", "a.png"}},
       {"raycast --rays", {"raycast", teapot, "--rays", "rays.csv", "--hits", "b.csv"}},
       {"check", {"check", "a.ply"}},
+      {"compare", {"compare", TESSERA_SOURCE_DIR "/tools/models/sphere.json", "a.ply", "--samples", "99"}},
       {"measure", {"measure", teapot, "--enclosed", "--inertia"}}};
   for (const auto& [name, words] : runs) {
     const std::size_t begin = page.find("## " + name + "\n");

@@ -106,7 +106,7 @@ TEST_F(InterruptedStages, ReadingFromAPipeThatIsSilent) {
         Words{"convert", "silent.bpt", "-o", "a.json"}, Words{"eval", "silent.bpt", "-o", "a.csv", "--grid", "4x4"},
         Words{"raycast", "silent.bpt", "-o", "a.png"}, Words{"check", "silent.ply"}, Words{"measure", "silent.bpt"},
         Words{"section", "silent.bpt", "-o", "a.svg", "--at", "1"},
-        Words{"project", teapot, "--points", "silent.csv", "-o", "a.csv"},
+        Words{"project", teapot, "--points", "silent.csv", "-o", "a.csv"}, Words{"compare", teapot, "silent.ply"},
         Words{"raycast", teapot, "--rays", "silent.csv", "--hits", "a.csv"}})
     expect_end(command, 300ms);
   for (const int pipe : {model, mesh, rays}) ::close(pipe);

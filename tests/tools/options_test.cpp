@@ -76,6 +76,8 @@ TEST_F(CommonOptions, TimingsAreToldOnRequest) {
       {{"project", teapot, "--points", "p.csv", "-o", "b.csv"},
        {"read", "convert", "pack", "build", "evaluate", "write"}},
       {{"check", "a.ply"}, {"read", "check"}},
+      {{"compare", teapot, "a.ply", "--samples", "99", "-o", "c.ply"},
+       {"read", "convert", "pack", "build", "mesh", "evaluate", "write"}},
       {{"measure", teapot}, {"read", "measure"}}};
   for (const auto& [command, phases] : commands) {
     Names with = command;

@@ -35,6 +35,7 @@ TEST_F(Output, MissingFoldersAreMade) {
                                                        {"convert", teapot, "-o", "d/e/model.obj"},
                                                        {"section", teapot, "--at", "1", "-o", "g/cut.svg"},
                                                        {"project", teapot, "--points", "p.csv", "-o", "h/near.csv"},
+                                                       {"compare", teapot, "a/b/mesh.ply", "-o", "i/deviations.ply"},
                                                        {"raycast", teapot, "--size", "8x8", "-o", "f/picture.png"}};
   for (const std::vector<std::string>& command : commands) {
     output_of(command);

@@ -24,6 +24,7 @@ void add_commands(Command& tool, Session& session) {
   add_project(tool, session);
   add_section(tool, session);
   add_check(tool, session);
+  add_compare(tool, session);
   add_measure(tool, session);
   add_completion(tool, session);
   add_man(tool, session);

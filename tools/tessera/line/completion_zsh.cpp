@@ -14,7 +14,7 @@ std::string value_action(const Option& option) {
 /// The specifications of an option for _arguments: one per name, each excluding the others.
 std::string option_specs(const Option& option) {
   const std::string value = option.value.empty() ? "" : ":" + escaped(option.value, ":\\") + ":" + value_action(option);
-  if (option.is_positional()) return "        " + shell_quoted((option.repeated ? "*" : "1") + value) + " \\\n";
+  if (option.is_positional()) return "        " + shell_quoted((option.repeated ? "*" : "") + value) + " \\\n";
   std::string all, specs;
   for (const std::string& name : option.names) all += (all.empty() ? "" : " ") + name;
   for (const std::string& name : option.names) {

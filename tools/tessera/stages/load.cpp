@@ -112,14 +112,19 @@ Status add_file(const std::string& file, const LoadOptions& options, With with, 
   return {};
 }
 
-}  // namespace
-
 std::vector<std::string> model_format_names() {
   std::vector<std::string> names;
   std::istringstream list(model_formats());
   for (std::string name; list >> name;) names.push_back(name.substr(1, name.find(',') - 1));
   return names;
 }
+
+void add_input_format(Command& command, LoadOptions& options) {
+  command.add_choice("--input-format", model_format_names(), "Format of standard input, for MODEL -",
+                     [&options](const std::string& name) { options.input_format = name; });
+}
+
+}  // namespace
 
 std::string model_formats() { return ".bpt, .bv, .g2, .json, .obj, .rib, .step, .stp, .iges, .igs, .brep, .brp"; }
 
@@ -129,8 +134,16 @@ void add_models(Command& command, LoadOptions& options) {
                  "Files with surfaces (" + model_formats() + "), patterns of their names, or - for standard input",
                  options.files)
       .check(fault_of_name);
-  command.add_choice("--input-format", model_format_names(), "Format of standard input, for MODEL -",
-                     [&options](const std::string& name) { options.input_format = name; });
+  add_input_format(command, options);
+}
+
+void add_model(Command& command, LoadOptions& options) {
+  command
+      .add("MODEL", "FILE", "The file with surfaces (" + model_formats() + "), or - for standard input",
+           [&options](const std::string& file) { options.files = {file}; })
+      .require()
+      .check(fault_of_name);
+  add_input_format(command, options);
 }
 
 void check_input(const LoadOptions& options) {
@@ -218,7 +231,7 @@ Report report_of(const Job& job, const Loaded& loaded) {
   Report report;
   report.add("models", loaded.files);
   report.add("failed", failed);
-  report.add("output", job.output, job.output + ": ");
+  report.add("output", job.output, job.output.empty() ? "" : job.output + ": ");
   return report;
 }
 

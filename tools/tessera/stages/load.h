@@ -21,6 +21,8 @@ void check_input(const LoadOptions& options);
 void check_input_of_team(const LoadOptions& options);
 /// Adds MODEL... and --input-format.
 void add_models(Command& command, LoadOptions& options);
+/// Adds one MODEL and --input-format.
+void add_model(Command& command, LoadOptions& options);
 /// Adds --fit-tolerance and --cad-reader.
 void add_reading(Command& command, LoadOptions& options);
 

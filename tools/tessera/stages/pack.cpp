@@ -44,6 +44,22 @@ Result<PatchSet> pack_faces(const Loaded& loaded, const PackOptions& options, Ti
   return with_places(loaded, 0, make_patch_set((*joined)->shape, {}, loaded.fit));
 }
 
+/// Joins the free edges of a model's shapes, and places their faces anew. Where joining fails, a shape stays as it is.
+Status join_shapes(Model& model) {
+  bool has_joined = false;
+  for (Shape& shape : model.shapes) {
+    Result<std::optional<JoinedShape>> joined = joined_if_free(shape);
+    if (!joined || !*joined) continue;
+    shape = std::move((*joined)->shape);
+    has_joined = true;
+  }
+  if (!has_joined) return {};
+  Result<std::vector<ModelSurface>> faces = placed_faces(model.shapes, model.instances);
+  if (!faces) return faces.status();
+  model.surfaces = *std::move(faces);
+  return {};
+}
+
 /// Packs the faces of a shape. An instance of it has the surfaces from `first_surface` on, which messages name; lengths
 /// grow by at most `stretch` where instances stand.
 Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, const PackedSet& packed,
@@ -101,6 +117,14 @@ Result<Packed> pack_for_meshes(Loaded& loaded, const PackOptions& options, bool 
   Packed packed;
   packed.sets.emplace_back().set = *std::move(set);
   return packed;
+}
+
+Result<PatchSet> pack_joined(Loaded& loaded, const PackOptions& options, Timings& timings) {
+  if (!options.untrimmed && !loaded.model.instances.empty()) {
+    const Status status = timings.measure("join", [&] { return join_shapes(loaded.model); });
+    if (!status.ok()) return in_file(loaded.files[0], status);
+  }
+  return pack_faces(loaded, options, timings);
 }
 
 Result<std::optional<JoinedShape>> joined_if_free(const Shape& shape) {

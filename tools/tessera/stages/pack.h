@@ -36,6 +36,10 @@ struct Packed {
 /// states none, or free ones, so that faces meet along them; where that fails, faces stay unconnected.
 Result<Packed> pack_for_meshes(Loaded& loaded, const PackOptions& options, bool by_shapes, Timings& timings);
 
+/// Packs all surfaces of a model that has its patches into one set. Edges that run side by side are joined as above, in
+/// shapes too, so that faces meet along them and closed shells are closed. Errors name file and surface.
+Result<PatchSet> pack_joined(Loaded& loaded, const PackOptions& options, Timings& timings);
+
 /// A shape whose edges joined_edges() has joined within a distance.
 struct JoinedShape {
   Shape shape;
