@@ -3,6 +3,7 @@
 // included alone; measures.h and sections.h need no Embree.
 
 #include "tessera/measures.h"
+#include "tessera/nearest_curves.h"
 #include "tessera/nearest_points.h"
 #include "tessera/sections.h"
 #include "tessera/solid.h"

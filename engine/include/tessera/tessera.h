@@ -50,6 +50,7 @@
 
 // Headers of the libraries tessera::ray, tessera::io and tessera::parts are installed with these.
 #if __has_include("tessera/ray_scene.h")
+#include "tessera/nearest_curves.h"
 #include "tessera/nearest_points.h"
 #include "tessera/queries.h"
 #include "tessera/ray_hit.h"
