@@ -24,6 +24,14 @@ class PointTree {
   /// Calls visit(index) for all points in a box, borders included.
   template <class Visit>
   void visit_box(const Box3& box, const Visit& visit) const {
+    visit_box_while(box, [&](std::uint32_t index) {
+      visit(index);
+      return true;
+    });
+  }
+  /// Calls visit(index) for points in a box, borders included, until it returns false.
+  template <class Visit>
+  void visit_box_while(const Box3& box, const Visit& visit) const {
     visit_range(box, visit, 0, order_.size());
   }
 
@@ -58,18 +66,18 @@ class PointTree {
   }
 
   template <class Visit>
-  void visit_range(const Box3& box, const Visit& visit, std::size_t from, std::size_t to) const {
+  bool visit_range(const Box3& box, const Visit& visit, std::size_t from, std::size_t to) const {
     if (to - from <= leaf) {
       for (std::size_t k = from; k < to; ++k)
-        if (contains(box, points_[order_[k]])) visit(order_[k]);
-      return;
+        if (contains(box, points_[order_[k]]) && !visit(order_[k])) return false;
+      return true;
     }
     const std::size_t middle = from + (to - from) / 2;
     const Vec3& p = points_[order_[middle]];
     const int axis = axes_[middle];
-    if (contains(box, p)) visit(order_[middle]);
-    if (coordinate(box.lower, axis) <= coordinate(p, axis)) visit_range(box, visit, from, middle);
-    if (coordinate(box.upper, axis) >= coordinate(p, axis)) visit_range(box, visit, middle + 1, to);
+    if (contains(box, p) && !visit(order_[middle])) return false;
+    if (coordinate(box.lower, axis) <= coordinate(p, axis) && !visit_range(box, visit, from, middle)) return false;
+    return coordinate(box.upper, axis) < coordinate(p, axis) || visit_range(box, visit, middle + 1, to);
   }
 
   std::vector<Vec3> points_;
