@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 36> internal_export{
+constexpr std::array<std::string_view, 40> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -35,6 +35,10 @@ constexpr std::array<std::string_view, 36> internal_export{
     "tessera::BoxTree::touches",
     "tessera::are_near",
     "tessera::tree_towards",
+    "tessera::gauss_rule",
+    "tessera::piece_directions",
+    "tessera::lobatto_parameters",
+    "tessera::lobatto_to_bernstein",
     "tessera::io_failure",
     "tessera::OutputFile::make",
     "tessera::OutputFile::OutputFile",

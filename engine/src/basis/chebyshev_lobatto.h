@@ -4,19 +4,20 @@
 #include <span>
 #include <vector>
 
+#include "base/internal_export.h"
 #include "basis/small_matrix.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
 /// Returns x_i = sin^2(pi i / (2 n)), i = 0..n, n >= 1: the extrema of the Chebyshev polynomial on [0,1]. They are
 /// increasing, symmetric to rounding, and exactly 0 and 1 at the ends.
-std::vector<double> lobatto_parameters(int n);
+TESSERA_INTERNAL_EXPORT std::vector<double> lobatto_parameters(int n);
 /// Returns x_i mapped to [a,b], exactly a and b at the ends.
 double lobatto_parameter(std::span<const double> parameters, std::size_t i, double a, double b);
 
 /// Returns the matrix from values at x_0..x_n to the Bernstein coefficients of the polynomial through them. Its first
 /// and last row are exactly those of the identity, so end values are kept.
-Matrix lobatto_to_bernstein(int n);
+TESSERA_INTERNAL_EXPORT Matrix lobatto_to_bernstein(int n);
 /// Bounds how far rounding may move a coordinate of a tensor-product patch made by this matrix in both directions, from
 /// values of at most `largest_value` to control points of at most `largest_point`.
 ///

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "base/internal_export.h"
+
 namespace tessera { inline namespace abi_0_1 {
 
 /// The largest number of nodes of a rule.
@@ -15,7 +17,7 @@ struct GaussRule {
 };
 
 /// Returns the rule of `count` nodes, 1 <= count <= max_gauss. Threads: any number of calls at once.
-const GaussRule& gauss_rule(int count);
+TESSERA_INTERNAL_EXPORT const GaussRule& gauss_rule(int count);
 
 /// Returns the smallest number of nodes, from 2 on, with which the error of the rule is at most `tolerance`, and that
 /// bound of the error; 0 nodes if max_gauss do not suffice.

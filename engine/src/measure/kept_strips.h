@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/internal_export.h"
 #include "measure/strip.h"
 #include "trim/trim_region_impl.h"
 
@@ -18,6 +19,9 @@ struct PieceSigns {
 };
 PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside);
 
+/// Tells for each piece whether the kept part lies on its left: 1, on its right: -1, or that it is a point: 0. A piece
+/// that others cross counts by its middle, unless it is part of a kink in a loop that crosses itself nowhere else.
+TESSERA_INTERNAL_EXPORT std::vector<std::int8_t> piece_directions(const TrimRegion::Impl& region);
 /// Tells for each loop whether the kept part lies on its left: 1, on its right: -1, or that no piece tells: 0.
 std::vector<std::int8_t> loop_directions(const TrimRegion::Impl& region, std::size_t loops);
 

@@ -1,6 +1,8 @@
 // On which side of their pieces regions are kept.
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numeric>
 
 #include "measure/kept_strips.h"
@@ -76,6 +78,26 @@ void vote(const std::vector<TrimPiece>& pieces, bool starts_inside, int left, st
   }
 }
 
+/// Gives all pieces of a loop the direction that nearly all have, by length: where a loop crosses itself in a kink no
+/// larger than its gaps, the border remains a closed curve.
+void follow_loops(const TrimRegion::Impl& region, std::vector<std::int8_t>& directions) {
+  std::map<std::uint32_t, std::array<double, 2>> lengths;  // of pieces with the kept part on their right and left
+  const double wide = region.lines.u.period(), high = region.lines.v.period();
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const TrimPiece& piece = region.pieces[k];
+    if (piece.loop == no_id || directions[k] == 0) continue;
+    const ParameterPoint size = distance(piece.start(), piece.end());
+    lengths[piece.loop][directions[k] > 0 ? 1 : 0] += size.u / wide + size.v / high;
+  }
+  constexpr double small = 0.02;
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const auto found = lengths.find(region.pieces[k].loop);
+    if (found == lengths.end()) continue;
+    const auto [right, left] = found->second;
+    if (std::min(right, left) <= small * std::max(right, left)) directions[k] = left > right ? 1 : -1;
+  }
+}
+
 }  // namespace
 
 PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside) {
@@ -99,6 +121,26 @@ PieceSigns piece_signs(const std::vector<TrimPiece>& pieces, bool starts_inside)
     if (of_loop == 0) of_loop = direction;
   }
   return found;
+}
+
+std::vector<std::int8_t> piece_directions(const TrimRegion::Impl& region) {
+  const std::vector<TrimPiece>& pieces = region.pieces;
+  std::vector<std::int8_t> directions = Sweep(pieces).run(region.starts_inside, 0.5).signs;
+  bool is_all = true;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (pieces[k].start().v > pieces[k].end().v) directions[k] = static_cast<std::int8_t>(-directions[k]);
+    is_all = is_all && directions[k] != 0;
+  }
+  if (!is_all) {
+    const std::vector<TrimPiece> turned = exchanged(pieces);
+    const std::vector<std::int8_t> by_u = Sweep(turned).run(region.starts_inside, 0.5).signs;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const int sign = pieces[k].start().u < pieces[k].end().u ? -1 : 1;
+      if (directions[k] == 0) directions[k] = static_cast<std::int8_t>(sign * by_u[k]);
+    }
+  }
+  follow_loops(region, directions);
+  return directions;
 }
 
 std::vector<std::int8_t> loop_directions(const TrimRegion::Impl& region, std::size_t loops) {
