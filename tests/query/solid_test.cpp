@@ -150,6 +150,14 @@ TEST(SolidPoints, OfAFaceInTwoPieces) {
   };
   expect_sides(solid, 5000, 1, 1e-12, depth, {0.5, 0.5, 0.5});
   expect_sides(solid, 5000, 0.2, 1e-12, depth, {2.1, 0.1, -0.1});
+  // The face is turned as one, so that one block has the number 1 and the other -1.
+  const std::vector<Vec3> points{{0.5, 0.4, 0.3}, {2.1, 0.1, -0.1}, {2.1, 0.1, 0.1}, {1.5, 0.1, 0.1}};
+  std::vector<double> numbers(points.size());
+  ASSERT_TRUE(solid.winding_numbers(points, numbers).ok());
+  EXPECT_NEAR(std::abs(numbers[0]), 1, 1e-12);
+  EXPECT_NEAR(std::abs(numbers[1]), 1, 1e-12);
+  EXPECT_NEAR(numbers[2], 0, 1e-12);
+  EXPECT_NEAR(numbers[3], 0, 1e-12);
 }
 
 TEST(SolidPoints, OfOpenSurfacesAreNotCertified) {
@@ -159,7 +167,7 @@ TEST(SolidPoints, OfOpenSurfacesAreNotCertified) {
   EXPECT_FALSE(open.solid.is_closed());
   EXPECT_EQ(open.solid.open_borders(), 4u);
   EXPECT_FALSE(open.solid.contains({0, 0, 0}).certified);
-  EXPECT_EQ(open.solid.contains({0, 0, 0}).side, PointSide::unknown);
+  EXPECT_EQ(open.solid.contains({0, 0, 0}).side, PointSide::inside);
   EXPECT_EQ(open.solid.contains({3, 3, 3}).side, PointSide::outside);
 }
 

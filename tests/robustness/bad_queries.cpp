@@ -98,6 +98,16 @@ void contained_points(Table& table) {
   table.gives("a point that is not finite", "an invalid point",
               solid.contains({0, not_a_number, 0}).side == PointSide::invalid_point);
   table.gives("a point, but an open surface", "a side that is not certified", !solid.contains({1, 1, 0}).certified);
+  table.of("Solid::winding_numbers(points, numbers)");
+  std::vector<double> number(1);
+  const auto number_of = [&](const Vec3& point) {
+    return solid.winding_numbers({&point, 1}, number).ok() ? number[0] : infinite;
+  };
+  table.row("2 points, room for 1", buffer_too_small, solid.winding_numbers(two, number));
+  table.gives("a point that is not finite", "NaN", std::isnan(number_of({0, not_a_number, 0})));
+  table.gives("a point 1e300 away", "NaN", std::isnan(number_of({0, 1e300, 0})));
+  table.gives("a point 1e18 away", "a number near 0", std::abs(number_of({0, 1e18, 0})) < 1e-12);
+  table.gives("a corner of the field", "a number", std::isfinite(number_of(set.patch(0).point(0, 0))));
   table.of("signed_distances(solid, scene, points, distances)");
   const PointScene scene = value_of(PointScene::make(set));
   std::vector<double> distance(1);
