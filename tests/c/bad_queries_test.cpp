@@ -115,7 +115,12 @@ TEST(CBadQueries, SolidsAndTheirPoints) {
   expect_c_error(tsr_solid_distances(solid.get(), other.get(), &points, &out, nullptr), TSR_STALE, "different sets");
   expect_c_error(tsr_solid_distances(solid.get(), scene.get(), &points, nullptr, nullptr), TSR_INVALID_ARGUMENT,
                  "distances is a null");
+  expect_c_error(tsr_solid_winding_numbers(solid.get(), &points, nullptr, nullptr), TSR_INVALID_ARGUMENT,
+                 "numbers is a null");
+  expect_c_error(tsr_solid_winding_numbers(solid.get(), nullptr, &out, nullptr), TSR_INVALID_ARGUMENT, "points is a");
   --out.count;
+  expect_c_error(tsr_solid_winding_numbers(solid.get(), &points, &out, nullptr), TSR_BUFFER_TOO_SMALL,
+                 "numbers holds 1");
   expect_c_error(tsr_solid_distances(solid.get(), scene.get(), &points, &out, nullptr), TSR_BUFFER_TOO_SMALL,
                  "distances holds 1");
   // After an edit the solid is stale, also when its scenes were refitted.
@@ -129,6 +134,7 @@ TEST(CBadQueries, SolidsAndTheirPoints) {
   ASSERT_C(tsr_point_scene_refit(scene.get(), nullptr));
   refused(TSR_STALE, "");
   expect_c_error(tsr_solid_distances(solid.get(), scene.get(), &points, &out, nullptr), TSR_STALE, "");
+  expect_c_error(tsr_solid_winding_numbers(solid.get(), &points, &out, nullptr), TSR_STALE, "");
   EXPECT_EQ(side, std::vector<std::uint8_t>(2, 7));
   EXPECT_C(tsr_solid_contains(solid_of(made).get(), &points, &sides, nullptr));
   EXPECT_EQ(side, std::vector<std::uint8_t>(2, TSR_SIDE_OUTSIDE));

@@ -137,6 +137,31 @@ TEST(CSolid, SidesAndDistancesOfACube) {
   EXPECT_NEAR(distance[3], 2, 1e-14);
 }
 
+TEST(CSolid, WindingNumbersOfACubeWithoutALid) {
+  std::vector<BezierPatch> patches = cube();
+  const Handle<tsr_set> closed = set_of(patches);
+  patches.pop_back();
+  const Handle<tsr_set> open = set_of(patches);
+  const PointMemory<float> memory({{1, 1, 1}, {1, 1, infinity}, {5, 1, -3}});
+  const tsr_query_points from = memory.points();
+  std::vector<double> number(3);
+  const tsr_out out = out_of(number, 1);
+  ASSERT_C(tsr_solid_winding_numbers(solid_of(scene_of(closed.get()).get()).get(), &from, &out, nullptr));
+  EXPECT_NEAR(number[0], 1, 1e-12);
+  EXPECT_TRUE(std::isnan(number[1]));
+  EXPECT_NEAR(number[2], 0, 1e-12);
+  const Handle<tsr_solid> solid = solid_of(scene_of(open.get()).get());
+  ASSERT_C(tsr_solid_winding_numbers(solid.get(), &from, &out, nullptr));
+  EXPECT_NEAR(number[0], 5.0 / 6, 1e-8);
+  EXPECT_TRUE(std::isnan(number[1]));
+  std::vector<std::uint8_t> side(3), is_certified(3, 9);
+  tsr_sides_out sides = sized<tsr_sides_out>();
+  sides.side = out_of(side, 1), sides.is_certified = out_of(is_certified, 1);
+  ASSERT_C(tsr_solid_contains(solid.get(), &from, &sides, nullptr));
+  EXPECT_EQ(side, (std::vector<std::uint8_t>{TSR_SIDE_INSIDE, TSR_SIDE_INVALID_POINT, TSR_SIDE_OUTSIDE}));
+  EXPECT_EQ(is_certified, std::vector<std::uint8_t>(3, 0));
+}
+
 TEST(CMeasures, OfACube) {
   const Handle<tsr_model> loose = model_of(cube());
   tsr_model* joined = nullptr;

@@ -69,8 +69,8 @@ tsr_status tsr_point_scene_nearest(const tsr_point_scene* scene, const tsr_query
                                    const tsr_nearest_out* nearest, const tsr_run* run);
 
 /* --- Solids ------------------------------------------------------------------------------------------------------ */
-/* A closed surface, prepared for the question which points lie inside. It keeps its scene; make it anew after the
- * scene's refit. */
+/* A surface, closed or open, prepared for the question which points lie inside. It keeps its scene; make it anew after
+ * the scene's refit. */
 typedef struct tsr_solid tsr_solid;
 tsr_status tsr_solid_new(tsr_solid** solid, const tsr_scene* scene, const tsr_run* run);
 typedef struct tsr_solid_info {
@@ -92,6 +92,13 @@ typedef struct tsr_sides_out {
  * call. Errors: TSR_BUFFER_TOO_SMALL, TSR_STALE. */
 tsr_status tsr_solid_contains(const tsr_solid* solid, const tsr_query_points* points, const tsr_sides_out* sides,
                               const tsr_run* run);
+/* Writes the generalized winding number of each point, double: the solid angle that the surface covers, seen from there,
+ * as a share of the whole sphere. A closed surface has 1 inside and 0 outside, an open one numbers in between; where
+ * the surface is open, tsr_solid_contains() tells sides by them: inside above 0.5 in absolute value, unknown at 0.5
+ * within 1e-6. NaN for a point that is not finite. solid.h tells how faces are turned. Otherwise as
+ * tsr_solid_contains(). */
+tsr_status tsr_solid_winding_numbers(const tsr_solid* solid, const tsr_query_points* points, const tsr_out* numbers,
+                                     const tsr_run* run);
 /* Writes the distance of each point from the surface, double, negative inside; NaN where the side is unknown, and for a
  * point that is not finite. `scene`: of the solid's set, else TSR_STALE. Otherwise as tsr_solid_contains(). */
 tsr_status tsr_solid_distances(const tsr_solid* solid, const tsr_point_scene* scene, const tsr_query_points* points,

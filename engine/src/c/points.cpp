@@ -187,6 +187,27 @@ tsr_status tsr_solid_contains(const tsr_solid* solid, const tsr_query_points* po
   });
 }
 
+tsr_status tsr_solid_winding_numbers(const tsr_solid* solid, const tsr_query_points* points, const tsr_out* numbers,
+                                     const tsr_run* run) {
+  return c_call([&]() -> CStatus {
+    const InUse<CSolid> of(solid);
+    if (CStatus status = of.check(); status.code) return status;
+    if (!numbers || !numbers->data) return null_pointer("numbers");
+    tsr_query_points from{};
+    if (CStatus status = solid_points(points, from); status.code) return status;
+    View1<double> to;
+    if (CStatus status = output_of("numbers", *numbers, from.position.count, to); status.code) return status;
+    return run_work(run, [&](const Execution& execution) -> CStatus {
+      std::vector<Vec3> list;
+      if (CStatus status = copy_of(from, list); status.code) return status;
+      std::vector<double> found(list.size());
+      if (Status status = of->solid.winding_numbers(list, found, execution); !status.ok()) return status;
+      write_records(to, found.size(), [&](std::size_t k) { return found[k]; });
+      return {};
+    });
+  });
+}
+
 tsr_status tsr_solid_distances(const tsr_solid* solid, const tsr_point_scene* scene, const tsr_query_points* points,
                                const tsr_out* distances, const tsr_run* run) {
   return c_call([&]() -> CStatus {

@@ -125,6 +125,7 @@ _FUNCTIONS = {
     "tsr_solid_new": "ippp",
     "tsr_solid_describe": "ipp",
     "tsr_solid_contains": "ipppp",
+    "tsr_solid_winding_numbers": "ipppp",
     "tsr_solid_distances": "ippppp",
     "tsr_measure_defaults": "-p",
     "tsr_measures_new": "ipppp",

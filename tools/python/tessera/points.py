@@ -115,7 +115,7 @@ class Sides(TypedArrays):
 
     @property
     def unknown(self) -> np.ndarray:
-        """Whether rays in all directions that were tried contradict each other, as where the surface is open."""
+        """Whether the surface is open, and the winding number is 0.5 or -0.5, within 1e-6."""
         return self.side == _UNKNOWN
 
     @property
@@ -226,8 +226,9 @@ class PointScene(Handle):
 
 
 class Solid(Handle):
-    """A closed surface, of a model, a patch set or a scene for rays, prepared for the question which points lie inside.
-    After an edit of the patches refit the scene, and make the solid anew.
+    """A surface, of a model, a patch set or a scene for rays, prepared for the question which points lie inside. Where it
+    is open, winding numbers tell sides, none of which is certified. After an edit of the patches refit the scene, and
+    make the solid anew.
 
     >>> import tessera as ts
     >>> ball = ts.Solid(ts.sphere(2.0))
@@ -272,6 +273,22 @@ class Solid(Handle):
         """Returns whether each of ``points`` (..., 3) lies inside: False also where that is unknown, and for points that
         are not finite. sides() tells these apart, and which answers are certified."""
         return self.sides(points).inside
+
+    def winding_numbers(self, points: Any) -> np.ndarray:
+        """Returns the generalized winding number of each of ``points`` (..., 3): the solid angle that the surface covers,
+        seen from there, as a share of the whole sphere. It is 1 inside of a closed surface and 0 outside, and in between
+        where the surface is open; NaN for points that are not finite."""
+        wanted = _Points(points)
+        numbers = np.empty(wanted.shape)
+        to = out_view("numbers", numbers, _DOUBLE, wanted.shape, 1)
+        run(
+            library.tsr_solid_winding_numbers,
+            self._handle,
+            ctypes.byref(wanted.struct),
+            ctypes.byref(to),
+            is_long=wanted.is_long,
+        )
+        return numbers
 
     def signed_distance(self, points: Any) -> np.ndarray:
         """Returns the distance of each of ``points`` (..., 3) from the surface, negative inside; NaN where the side is

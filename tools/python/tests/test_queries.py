@@ -10,8 +10,8 @@ import tessera as ts
 from conftest import model_file, wavy
 
 
-def box(low=(0, 0, 0), high=(1, 1, 1)):
-    """The six faces of a box, which share no edges, with normals outwards."""
+def box(low=(0, 0, 0), high=(1, 1, 1), count=6):
+    """The first faces of a box, which share no edges, with normals outwards; without the last one it has no lid."""
     low, high = np.array(low, float), np.array(high, float)
     faces = []
     for axis in range(3):
@@ -24,7 +24,7 @@ def box(low=(0, 0, 0), high=(1, 1, 1)):
             points[0, :, first], points[1, :, first] = low[first], high[first]
             points[:, 0, second], points[:, 1, second] = low[second], high[second]
             faces.append(points)
-    return ts.bezier(np.array(faces))
+    return ts.bezier(np.array(faces[:count]))
 
 
 @pytest.fixture
@@ -111,7 +111,7 @@ def test_edits_and_lifetimes():
     moved = patches[0].points + [0, 0, 5]
     before = scene.nearest([0.5, 0.5, 9]).distance
     patches[0].points = moved
-    for call in (scene.nearest, solid.contains, solid.signed_distance):
+    for call in (scene.nearest, solid.contains, solid.winding_numbers, solid.signed_distance):
         with pytest.raises(ts.StateError):
             call([0.5, 0.5, 9])
     scene.refit()
@@ -146,6 +146,21 @@ def test_a_solid_tells_inside_from_outside():
     assert np.isnan(solid.signed_distance([np.inf, 0, 0]))
     with pytest.raises(ts.ArgumentError, match=r"expected shape \(..., 3\)"):
         solid.contains([1, 2])
+
+
+def test_winding_numbers_of_closed_and_open_boxes():
+    points = np.random.default_rng(7).uniform(-1, 2, (500, 3))
+    inside = ((points > 0) & (points < 1)).all(axis=1)
+    closed = ts.Solid(box()).winding_numbers(points.reshape(5, 100, 3))
+    assert closed.shape == (5, 100) and np.allclose(closed.reshape(-1), inside, atol=1e-9) and inside.any()
+    open_box = ts.Solid(box(count=5))
+    assert not open_box.is_closed
+    assert open_box.winding_numbers([0.5, 0.5, 0.5]) == pytest.approx(5 / 6, abs=1e-8)
+    assert open_box.winding_numbers(np.float32([0.5, 0.5, 0.5])) == pytest.approx(5 / 6, abs=1e-8)
+    sides = open_box.sides([[0.5, 0.5, 0.5], [0.5, 0.5, 3], [0.5, 0.5, 1]])
+    assert sides.side.tolist() == [1, 0, 2] and not sides.certified.any()
+    assert np.isnan(open_box.winding_numbers([[np.nan, 0, 0]])).all()
+    assert open_box.winding_numbers(np.zeros((0, 3))).shape == (0,)
 
 
 def test_measures_of_a_box():
