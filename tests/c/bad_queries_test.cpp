@@ -54,6 +54,9 @@ TEST(CBadQueries, PointsWithoutMemoryOrOfOtherCounts) {
   nearest.struct_size = 0, refused(TSR_INVALID_ARGUMENT, "tsr_nearest_out: struct_size is 0");
   points.is_double = 2, refused(TSR_INVALID_ARGUMENT, "tsr_query_points: is_double is 2");
   nearest.reserved = 1, refused(TSR_INVALID_ARGUMENT, "tsr_nearest_out: reserved is 1");
+  points.patches = -1, refused(TSR_INVALID_ARGUMENT, "patches must be at least 0");
+  points.patches = (1 << 20) + 1, refused(TSR_INVALID_ARGUMENT, "from 1 to 2^20");
+  points.patches = 2, refused(TSR_BUFFER_TOO_SMALL, "");
   points.position.data = nullptr, refused(TSR_INVALID_ARGUMENT, "position is a null pointer");
   points.max_distance = in_of(reach, 1), refused(TSR_COUNT_MISMATCH, "max_distance");
   nearest.distance.count = 2, refused(TSR_BUFFER_TOO_SMALL, "distance");

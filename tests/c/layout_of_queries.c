@@ -12,7 +12,7 @@ const struct layout layout_of_queries[] = {
     SIZE(tsr_point_scene_info, 24),
     PLACE(tsr_query_points, struct_size, 0),
     PLACE(tsr_query_points, is_double, 8),
-    PLACE(tsr_query_points, reserved, 12),
+    PLACE(tsr_query_points, patches, 12),
     PLACE(tsr_query_points, position, 16),
     PLACE(tsr_query_points, max_distance, 48),
     SIZE(tsr_query_points, 80),

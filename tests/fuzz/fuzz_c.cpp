@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tessera/tessera_c.h"
+#include "tessera/tessera_c_queries.h"
 
 namespace {
 
@@ -97,6 +98,10 @@ class Program {
   static std::size_t kind_of(const tsr_plan*) { return 2; }
   static std::size_t kind_of(const tsr_scene*) { return 3; }
   static std::size_t kind_of(const tsr_hits*) { return 4; }
+  static std::size_t kind_of(const tsr_point_scene*) { return 5; }
+  static std::size_t kind_of(const tsr_solid*) { return 6; }
+  static std::size_t kind_of(const tsr_measures*) { return 7; }
+  static std::size_t kind_of(const tsr_sections*) { return 8; }
   template <class T>
   void keep(tsr_status code, T* const& made) {  // a reference, since the call writes it
     require(sound(code) == (made != nullptr));
@@ -123,7 +128,7 @@ class Program {
   }
 
   void call() {
-    switch (data_.ConsumeIntegralInRange(0, 13)) {
+    switch (data_.ConsumeIntegralInRange(0, 17)) {
       case 0:
         return make_model();
       case 1:
@@ -154,6 +159,14 @@ class Program {
       }
       case 11:
         return check_mesh();
+      case 12:
+        return make_queries();
+      case 13:
+        return ask_points();
+      case 14:
+        return measure();
+      case 15:
+        return cut();
       default:
         return fill();
     }
@@ -285,6 +298,58 @@ class Program {
     (void)sound(tsr_set_patch(static_cast<tsr_set*>(of), size(), &patch, nullptr, nullptr));
     (void)tsr_model_text(static_cast<tsr_model*>(of), data_.ConsumeIntegralInRange(-1, 8), size());
   }
+  void make_queries() {
+    const tsr_set* const set = of<tsr_set>();
+    tsr_point_scene* points = nullptr;
+    keep(tsr_point_scene_new(&points, set, nullptr), points);
+    const tsr_scene* const scene = of<tsr_scene>();
+    tsr_solid* solid = nullptr;
+    keep(tsr_solid_new(&solid, scene, nullptr), solid);
+  }
+  void ask_points() {
+    tsr_query_points points = sized<tsr_query_points>();
+    points.is_double = data_.ConsumeBool(), points.patches = data_.ConsumeIntegralInRange(-1, 4);
+    points.position = in(), points.max_distance = in();
+    tsr_nearest_out nearest = sized<tsr_nearest_out>();
+    nearest.is_double = data_.ConsumeBool();
+    nearest.kind = out(), nearest.distance = out(), nearest.uv = out(), nearest.normal = out();
+    tsr_point_scene* const scene = of<tsr_point_scene>();
+    (void)sound(tsr_point_scene_nearest(scene, &points, &nearest, nullptr));
+    if (data_.ConsumeBool()) (void)sound(tsr_point_scene_refit(scene, nullptr));
+    if (data_.ConsumeBool()) points.max_distance = {};
+    tsr_sides_out sides = sized<tsr_sides_out>();
+    sides.side = out(), sides.is_certified = out();
+    const tsr_out numbers = out(), distances = out();
+    const tsr_solid* const solid = of<tsr_solid>();
+    (void)sound(tsr_solid_contains(solid, &points, &sides, nullptr));
+    (void)sound(tsr_solid_winding_numbers(solid, &points, &numbers, nullptr));
+    (void)sound(tsr_solid_distances(solid, scene, &points, &distances, nullptr));
+  }
+  void measure() {
+    tsr_measure_options options = sized<tsr_measure_options>();
+    options.accuracy = data_.ConsumeBool() ? 1e-3 : number();
+    options.max_cells = data_.ConsumeIntegralInRange<std::uint64_t>(0, 64);
+    options.flags = data_.ConsumeIntegralInRange<std::uint32_t>(0, 16);
+    const tsr_model* const model = of<tsr_model>();
+    tsr_measures* measures = nullptr;
+    keep(tsr_measures_new(&measures, model, &options, nullptr), measures);
+    tsr_area area = sized<tsr_area>();
+    (void)sound(tsr_measures_area(of<tsr_measures>(), data_.ConsumeIntegralInRange(-2, 4), &area));
+    tsr_body body = sized<tsr_body>();
+    (void)sound(tsr_measures_body(of<tsr_measures>(), data_.ConsumeIntegralInRange(-2, 4), &body));
+  }
+  void cut() {
+    const std::array<double, 3> normal{number(), number(), number()};
+    const std::array<double, 2> offsets{number(), number()};
+    tsr_section_options options;
+    tsr_section_defaults(&options);
+    options.max_points = 5000;
+    if (data_.ConsumeBool()) options.tolerance = number(), options.max_gap = number(), options.contact = number();
+    const tsr_set* const set = of<tsr_set>();
+    tsr_sections* sections = nullptr;
+    const std::size_t count = data_.ConsumeIntegralInRange<std::size_t>(0, 2);
+    keep(tsr_sections_new(&sections, set, normal.data(), offsets.data(), count, &options, nullptr), sections);
+  }
   void check_mesh() {
     tsr_mesh mesh = sized<tsr_mesh>();
     mesh.position = {buffer_.data(), data_.ConsumeIntegralInRange<std::size_t>(0, 64), 0, 0};
@@ -296,7 +361,7 @@ class Program {
 
   FuzzedDataProvider& data_;
   std::vector<void*> handles_;
-  std::array<void*, 5> latest_ = {};
+  std::array<void*, 9> latest_ = {};
   /// Views lie in its middle, so that no stride leaves it.
   alignas(8) std::array<unsigned char, 16384> buffer_ = {};
 };

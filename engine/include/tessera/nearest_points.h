@@ -150,6 +150,9 @@ struct PointViews {
   View3<const T> position = {};  ///< required; in the model's coordinates
   /// Surfaces farther away count as none, at least 0. Empty: infinity. Stride 0: record 0 belongs to all points.
   View1<const T> max_distance = {};
+  /// The nearest points of so many patches are wanted, 1 to 2^20: record k * patches + j of outputs is the j-th of
+  /// point k, as PointScene::nearest_patches() has them. For 1, the nearest point.
+  std::size_t patches = 1;
 };
 
 /// Nearest points as arrays: record k of each view is written for point k. Units are those of NearestPoint, whose
@@ -166,11 +169,11 @@ struct NearestViews {
   View1<NearestFlags> flags = {};                 ///< as in NearestPoint
 };
 
-/// Finds the nearest point of the surface to each point: that of PointScene::nearest() for the same numbers in double,
-/// bit for bit. A point whose largest distance is negative or NaN is an invalid point.
+/// Finds the nearest point of the surface to each point, or those of several patches: that of PointScene::nearest() for
+/// the same numbers in double, bit for bit. A point whose largest distance is negative or NaN is an invalid point.
 ///
 /// Errors, with nothing written: count_mismatch (fewer largest distances than points), buffer_too_small (an output with
-/// fewer records than `position`), invalid_argument (no output; a view that lacks a component, is misaligned, or has a
+/// too few records), invalid_argument (`patches`; no output; a view that lacks a component, is misaligned, or has a
 /// stride below 0, below 1 for an output; an output that shares memory with another view), stale. Errors that leave
 /// outputs partly written: cancelled, out_of_memory.
 Status nearest(const PointScene& scene, const PointViews<float>& points, const NearestViews<float>& nearest,

@@ -37,7 +37,7 @@ tsr_status tsr_point_scene_describe(const tsr_point_scene* scene, tsr_point_scen
 typedef struct tsr_query_points {
   size_t struct_size;
   int32_t is_double;   /* 1: numbers are double; 0: float */
-  int32_t reserved;    /* 0 */
+  int32_t patches;     /* 0 or 1: the nearest point; n: those of the n nearest patches, in records n k to n k + n - 1 */
   tsr_in position;     /* three components */
   tsr_in max_distance; /* surfaces farther away count as none; null data: infinity; 1 record holds for all points */
 } tsr_query_points;
@@ -63,7 +63,8 @@ typedef struct tsr_nearest_out {
   tsr_out position, normal; /* in the model; unit, along du x dv */
 } tsr_nearest_out;
 /* Finds the nearest point of the surfaces, within their trimming loops, to each point. A point that is not finite, or
- * whose max_distance is NaN or below 0, is TSR_NEAREST_INVALID_POINT. Errors: TSR_COUNT_MISMATCH, TSR_BUFFER_TOO_SMALL,
+ * whose max_distance is NaN or below 0, is TSR_NEAREST_INVALID_POINT. Errors: TSR_INVALID_ARGUMENT (patches below 0 or
+ * above 2^20), TSR_COUNT_MISMATCH, TSR_BUFFER_TOO_SMALL,
  * TSR_STALE. */
 tsr_status tsr_point_scene_nearest(const tsr_point_scene* scene, const tsr_query_points* points,
                                    const tsr_nearest_out* nearest, const tsr_run* run);
@@ -88,12 +89,12 @@ typedef struct tsr_sides_out {
   tsr_out side;         /* uint8_t: TSR_SIDE_OUTSIDE, ... */
   tsr_out is_certified; /* uint8_t: 1 if the side is proven, unless the point lies on the surface up to rounding */
 } tsr_sides_out;
-/* Tells on which side each point lies. points->max_distance must be null data. Memory: 32 bytes per point during the
+/* Tells on which side each point lies. points->max_distance must be null data, and patches 0 or 1. Memory: 32 bytes per point during the
  * call. Errors: TSR_BUFFER_TOO_SMALL, TSR_STALE. */
 tsr_status tsr_solid_contains(const tsr_solid* solid, const tsr_query_points* points, const tsr_sides_out* sides,
                               const tsr_run* run);
-/* Writes the generalized winding number of each point, double: the solid angle that the surface covers, seen from there,
- * as a share of the whole sphere. A closed surface has 1 inside and 0 outside, an open one numbers in between; where
+/* Writes the generalized winding number of each point, double: the solid angle that the surface covers, seen from
+ * there, as a share of the whole sphere. A closed surface has 1 inside and 0 outside, an open one numbers in between; where
  * the surface is open, tsr_solid_contains() tells sides by them: inside above 0.5 in absolute value, unknown at 0.5
  * within 1e-6. NaN for a point that is not finite. solid.h tells how faces are turned. Otherwise as
  * tsr_solid_contains(). */

@@ -1,5 +1,7 @@
 // Nearest points and solids of the C interface.
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "c/objects.h"
@@ -52,8 +54,10 @@ CStatus nearest_of(const PointScene& scene, const tsr_query_points& points, cons
       status.code)
     return status;
   if (CStatus status = nearest_views(out, to); status.code) return status;
+  if (points.patches < 0) return bad("patches must be at least 0, found " + std::to_string(points.patches));
+  from.patches = std::max<std::size_t>(1, static_cast<std::size_t>(points.patches));
   if (Status status = nearest(scene, from, to, execution); !status.ok()) return status;
-  clear_padding(out.flags, points.position.count);
+  clear_padding(out.flags, points.position.count * from.patches);
   return {};
 }
 
@@ -72,6 +76,7 @@ CStatus copy_points(const tsr_in& position, std::vector<Vec3>& points) {
 CStatus solid_points(const tsr_query_points* points, tsr_query_points& from) {
   if (!points) return null_pointer("points");
   if (CStatus status = read_struct("tsr_query_points", points, from); status.code) return status;
+  if (from.patches < 0 || from.patches > 1) return bad("patches must be 0 or 1: a point has one side");
   if (from.max_distance.data) return bad("max_distance must be a null pointer: sides have no largest distance");
   return from.position.data ? CStatus() : null_pointer("position");
 }

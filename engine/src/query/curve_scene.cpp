@@ -52,8 +52,8 @@ CurvePoint point_of(const CurveSpan& span, const Vec3& centre, double t) {
   return {t, 0, position, (1 / w) * (slope - dw * position)};
 }
 
-/// Moves the parameter of a nearest point to the foot of a perpendicular near it, within the span: where it lies is known
-/// from distances only to the root of their rounding. Newton's method, with second derivatives by differences.
+/// Moves the parameter of a nearest point to the foot of a perpendicular near it, within the span: where it lies is
+/// known from distances only to the root of their rounding. Newton's method, with second derivatives by differences.
 double polished(const CurveSpan& span, const Vec3& centre, const Vec3& point, double t) {
   constexpr double step = 1e-4;
   constexpr int steps = 4;

@@ -55,8 +55,8 @@ inline double chord_distance(const Vec3& a, const Vec3& b, const Vec3& point) {
 template <class At>
 class CurveSearch {
  public:
-  /// `bend`: the second derivative by t. `scale`: from lengths to shares of the size. `limit`: the distance beyond which
-  /// points are of no use.
+  /// `bend`: the second derivative by t. `scale`: from lengths to shares of the size. `limit`: the distance beyond
+  /// which points are of no use.
   CurveSearch(const At& at, const VectorRange& bend, double scale, const Vec3& point, double limit)
       : at_(at), bend_(bend), scale_(scale), point_(point), limit_(limit) {
     best_.distance = infinity, best_.converged = true, best_.is_farther = true, best_.on_border = true;

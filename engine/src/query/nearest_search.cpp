@@ -14,6 +14,23 @@ constexpr double relative_slack = 0x1p-50;  // rounding of a distance by that of
 constexpr double min_apart = 1e-6;
 constexpr std::size_t max_stack = 256;
 
+/// Whether a line of a patch lies on a side that has collapsed to a point.
+bool is_point(const SetView& set, std::uint32_t patch, const PatchPart& line) {
+  const SideMask collapsed = set.collapsed_sides(patch);
+  return (collapsed.has(Side::u0) && line.u1 == 0) || (collapsed.has(Side::u1) && line.u0 == 1) ||
+         (collapsed.has(Side::v0) && line.v1 == 0) || (collapsed.has(Side::v1) && line.v0 == 1);
+}
+
+/// Whether a candidate is nearer than another one. Up to the last digits, those where the line is perpendicular come
+/// first: a foot just across a border of pieces is the nearest point of both. Of equally near ones the first by patch
+/// and parameters counts, whichever was found first.
+bool is_better(const NearCandidate& candidate, const NearCandidate& best, double slack) {
+  const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
+  const double digits = 0.125 * slack;
+  const bool is_as_near = best.patch != no_id && std::abs(candidate.distance - best.distance) <= digits;
+  return is_as_near && candidate.on_border != best.on_border ? best.on_border : order(candidate) < order(best);
+}
+
 }  // namespace
 
 NearestSearch::NearestSearch(const SetView& set, const QueryPieces& pieces) : set_(set), pieces_(pieces) {
@@ -90,7 +107,7 @@ double NearestSearch::limit(std::uint32_t patch) const {
 void NearestSearch::add_patch(const NearCandidate& candidate) {
   const auto known = std::ranges::find(places_, candidate.patch, &NearCandidate::patch);
   if (known != places_.end()) {
-    if (!is_better(candidate, *known)) return;
+    if (!is_better(candidate, *known, outcome_.slack)) return;
     places_.erase(known);
   } else if (places_.size() == patches_wanted_) {
     places_.pop_back();
@@ -179,7 +196,7 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   PatchPart part = area;
   if (!has_u) part.u0 = part.u1 = shape.along_x == Slope::rises ? area.u0 : area.u1;
   if (!has_v) part.v0 = part.v1 = shape.along_y == Slope::rises ? area.v0 : area.v1;
-  if (has_u != has_v && is_point(piece.patch, part)) {
+  if (has_u != has_v && is_point(set_, piece.patch, part)) {
     part.u0 = part.u1, part.v0 = part.v1;
     has_u = has_v = false;
   }
@@ -199,8 +216,8 @@ bool NearestSearch::is_decided(const QueryPiece& piece, const PatchPart& area, c
   return foot.converged;
 }
 
-/// Halves a piece, at least `lower` away, until each part is decided, or cannot be nearer by more than rounding. Returns
-/// whether `parts` sufficed, and what is left of parts_allowed_.
+/// Halves a piece, at least `lower` away, until each part is decided, or cannot be nearer by more than rounding.
+/// Returns whether `parts` sufficed, and what is left of parts_allowed_.
 bool NearestSearch::branch(const QueryPiece& piece, double lower, int parts) {
   const int most_parts = std::min(parts_allowed_, outcome_.parts + parts);
   const double rounding = 4 * outcome_.slack * pieces_.frame().scale;
@@ -252,13 +269,6 @@ void NearestSearch::push(const QueryPiece& piece, const PatchPart& area) {
   if (lower <= reach_) stack_.push_back({area, lower, bounds});
 }
 
-/// Whether a line of a patch lies on a side that has collapsed to a point.
-bool NearestSearch::is_point(std::uint32_t patch, const PatchPart& line) const {
-  const SideMask collapsed = set_.collapsed_sides(patch);
-  return (collapsed.has(Side::u0) && line.u1 == 0) || (collapsed.has(Side::u1) && line.u0 == 1) ||
-         (collapsed.has(Side::v0) && line.v1 == 0) || (collapsed.has(Side::v1) && line.v0 == 1);
-}
-
 bool NearestSearch::is_cut_away(const QueryPiece& piece, const PatchPart& area) const {
   if (!piece.is_cut) return false;
   const Domain box = rectangle_of(set_.source(piece.patch).domain, area);
@@ -280,23 +290,13 @@ void NearestSearch::offer(const QueryPiece& piece, const Foot& foot) {
   offer({piece.patch, foot.u, foot.v, foot.position, foot.distance, foot.on_border, foot.converged});
 }
 
-/// Whether a candidate is nearer than another one. Up to the last digits, those where the line is perpendicular come
-/// first: a foot just across a border of pieces is the nearest point of both. Of equally near ones the first by patch
-/// and parameters counts, whichever was found first.
-bool NearestSearch::is_better(const NearCandidate& candidate, const NearCandidate& best) const {
-  const auto order = [](const NearCandidate& a) { return std::tie(a.distance, a.patch, a.u, a.v); };
-  const double digits = 0.125 * outcome_.slack;
-  const bool is_as_near = best.patch != no_id && std::abs(candidate.distance - best.distance) <= digits;
-  return is_as_near && candidate.on_border != best.on_border ? best.on_border : order(candidate) < order(best);
-}
-
 /// Takes a candidate if it is the nearest so far. Others that are as near up to rounding are kept as ties.
 void NearestSearch::offer(const NearCandidate& candidate) {
   if (!(candidate.distance <= limit(candidate.patch) + outcome_.slack)) return;
   if (wanted_ == Wanted::all_places) return add_place(candidate);
   if (wanted_ == Wanted::patches) return add_patch(candidate);
   NearCandidate& best = outcome_.best;
-  const bool wins = is_better(candidate, best);
+  const bool wins = is_better(candidate, best, outcome_.slack);
   const NearCandidate other = wins ? best : candidate;
   if (wins) best = candidate;
   reach_ = std::min(reach_, (best.distance + outcome_.slack) * pieces_.frame().scale);

@@ -83,7 +83,6 @@ class NearestSearch {
   void search(QueryTree::Path& path);
   void polish(NearCandidate& candidate) const;
   double limit(std::uint32_t patch) const;
-  bool is_better(const NearCandidate& candidate, const NearCandidate& best) const;
   void add_place(const NearCandidate& candidate);
   void add_patch(const NearCandidate& candidate);
   bool is_same_place(const NearCandidate& a, const NearCandidate& b) const;
@@ -93,7 +92,6 @@ class NearestSearch {
   void offer(const QueryPiece& piece, const Foot& foot);
   void offer(const NearCandidate& candidate);
   bool is_kept(std::uint32_t patch, double u, double v) const;
-  bool is_point(std::uint32_t patch, const PatchPart& line) const;
   bool is_cut_away(const QueryPiece& piece, const PatchPart& area) const;
 
   const SetView& set_;

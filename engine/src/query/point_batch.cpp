@@ -1,3 +1,6 @@
+#include <string>
+#include <vector>
+
 #include "base/impl_access.h"
 #include "base/infinity.h"
 #include "query/point_scene_impl.h"
@@ -45,8 +48,13 @@ void write(const NearestPoint& point, const NearestViews<T>& out, std::size_t k)
 template <class T, class U>
 Status nearest_of(const PointScene& scene, const PointViews<T>& points, const NearestViews<U>& nearest,
                   const Execution& execution) {
+  constexpr std::size_t max_patches = std::size_t{1} << 20;
+  const std::size_t patches = points.patches;
+  if (!(patches >= 1 && patches <= max_patches))
+    return {StatusCode::invalid_argument,
+            "the patches for a point must be from 1 to 2^20, found " + std::to_string(patches)};
   return guarded([&]() -> Status {
-    BatchChecks checks(points.position.size);
+    BatchChecks checks(points.position.size, patches);
     checks.input("position", points.position);
     if (!points.max_distance.empty()) checks.input("max_distance", points.max_distance);
     for_each_output(nearest, [&](const char* name, const auto& view) { checks.output(name, view); });
@@ -57,7 +65,10 @@ Status nearest_of(const PointScene& scene, const PointViews<T>& points, const Ne
     const auto at = [&](std::size_t k) { return Vec3{p.at(k, 0), p.at(k, 1), p.at(k, 2)}; };
     return impl.for_points(p.size, execution, at, [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
       const double reach = points.max_distance.empty() ? infinity : double(points.max_distance.at(k, 0));
-      write(impl.nearest(at(k), reach, search, path), nearest, k);
+      if (patches == 1) return write(impl.nearest(at(k), reach, search, path), nearest, k);
+      std::vector<NearestPoint> several(patches);
+      impl.nearest_patches(at(k), reach, search, path, several);
+      for (std::size_t j = 0; j < patches; ++j) write(several[j], nearest, k * patches + j);
     });
   });
 }

@@ -97,7 +97,7 @@ NearestPoint PointScene::Impl::nearest(const Vec3& point, double max_distance, N
 void PointScene::Impl::nearest_patches(const Vec3& point, double max_distance, NearestSearch& search,
                                        QueryTree::Path& path, std::span<NearestPoint> nearest) const {
   NearestPoint none;
-  if (!is_valid(point)) {
+  if (!is_valid(point) || !(max_distance >= 0)) {
     none.kind = NearestKind::invalid_point;
     return std::ranges::fill(nearest, none), void();
   }

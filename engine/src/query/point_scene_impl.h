@@ -27,8 +27,8 @@ class PointScene::Impl {
   /// Errors: stale.
   Status check_fresh() const;
 
-  /// Calls find(k, search, path) for the points position(k), in tasks; in each, those that lie together one after the other.
-  /// Errors: cancelled, which is seen between points, because some take long.
+  /// Calls find(k, search, path) for the points position(k), in tasks; in each, those that lie together one after the
+  /// other. Errors: cancelled, which is seen between points, because some take long.
   template <class Position, class Find>
   Status for_points(std::size_t count, const Execution& execution, const Position& position, const Find& find) const;
   /// Finds a nearest point; `search` and `path` are of this scene.

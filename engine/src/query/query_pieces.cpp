@@ -25,6 +25,13 @@ bool is_flat(const PieceBounds& bounds) {
   return squared(f.off) <= max_off * max_off * longer * longer && longer <= max_aspect * shorter;
 }
 
+double rounding_of(const SetView& set) {
+  double rounding = 0;
+  for (std::size_t k = 0; k < set.patch_count(); ++k)
+    rounding = std::max(rounding, net_rounding(set.patch(k).degree_u(), set.patch(k).degree_v()));
+  return rounding;
+}
+
 }  // namespace
 
 /// The items of one patch.
@@ -93,6 +100,30 @@ void QueryPieces::make_curves(const SetView& set, std::uint32_t patch, PatchItem
   }
 }
 
+/// Joins the items of all patches, made in order of patches, and returns their boxes, of pieces first.
+std::vector<ItemBoxes> QueryPieces::take_items(std::vector<PatchItems>&& made) {
+  pieces_.clear(), curves_.clear();
+  const std::size_t count = first_piece_.size() - 1;
+  std::vector<ItemBoxes> boxes, curve_boxes;
+  std::size_t piece_count = 0, curve_count = 0;
+  for (const PatchItems& items : made) piece_count += items.pieces.size(), curve_count += items.curves.size();
+  pieces_.reserve(piece_count), curves_.reserve(curve_count), boxes.reserve(piece_count + curve_count);
+  for (std::size_t task = 0; task < made.size(); ++task) {
+    const std::size_t end = std::min(count, (task + 1) * patches_per_task);
+    for (std::size_t k = task * patches_per_task; k < end; ++k) {
+      first_piece_[k + 1] += static_cast<std::uint32_t>(pieces_.size());
+      first_curve_[k + 1] += static_cast<std::uint32_t>(curves_.size());
+    }
+    PatchItems items = std::move(made[task]);
+    pieces_.insert(pieces_.end(), items.pieces.begin(), items.pieces.end());
+    curves_.insert(curves_.end(), items.curves.begin(), items.curves.end());
+    boxes.insert(boxes.end(), items.piece_boxes.begin(), items.piece_boxes.end());
+    curve_boxes.insert(curve_boxes.end(), items.curve_boxes.begin(), items.curve_boxes.end());
+  }
+  boxes.insert(boxes.end(), curve_boxes.begin(), curve_boxes.end());
+  return boxes;
+}
+
 Status QueryPieces::build(const SetView& set, const SceneFrame& frame, const Execution& execution) {
   const Result<Isa> isa = usable_isa({});
   if (!isa) return isa.status();
@@ -112,32 +143,11 @@ Status QueryPieces::build(const SetView& set, const SceneFrame& frame, const Exe
     }
   };
   if (Status status = parallel_for(count, patches_per_task, execution, make); !status.ok()) return status;
-  pieces_.clear(), curves_.clear();
-  std::vector<ItemBoxes> boxes, curve_boxes;
-  std::size_t piece_count = 0, curve_count = 0;
-  for (const PatchItems& items : made) piece_count += items.pieces.size(), curve_count += items.curves.size();
-  pieces_.reserve(piece_count), curves_.reserve(curve_count), boxes.reserve(piece_count + curve_count);
-  for (std::size_t task = 0; task < made.size(); ++task) {
-    const std::size_t end = std::min(count, (task + 1) * patches_per_task);
-    for (std::size_t k = task * patches_per_task; k < end; ++k) {
-      first_piece_[k + 1] += static_cast<std::uint32_t>(pieces_.size());
-      first_curve_[k + 1] += static_cast<std::uint32_t>(curves_.size());
-    }
-    PatchItems items = std::move(made[task]);
-    pieces_.insert(pieces_.end(), items.pieces.begin(), items.pieces.end());
-    curves_.insert(curves_.end(), items.curves.begin(), items.curves.end());
-    boxes.insert(boxes.end(), items.piece_boxes.begin(), items.piece_boxes.end());
-    curve_boxes.insert(curve_boxes.end(), items.curve_boxes.begin(), items.curve_boxes.end());
-  }
-  boxes.insert(boxes.end(), curve_boxes.begin(), curve_boxes.end());
+  const std::vector<ItemBoxes> boxes = take_items(std::move(made));
   if (boxes.size() >= std::size_t{1} << 31)
     return Status(StatusCode::unsupported, "more than 2^31 pieces of patches and curves");
   tree_.build(boxes);
-  rounding_ = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const BezierPatch& patch = set.patch(k);
-    rounding_ = std::max(rounding_, net_rounding(patch.degree_u(), patch.degree_v()));
-  }
+  rounding_ = rounding_of(set);
   return {};
 }
 

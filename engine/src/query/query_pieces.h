@@ -49,6 +49,7 @@ class QueryPieces {
  private:
   struct PatchItems;
   void make_pieces(const SetView& set, std::uint32_t patch, PatchItems& items) const;
+  std::vector<ItemBoxes> take_items(std::vector<PatchItems>&& made);
   void make_curves(const SetView& set, std::uint32_t patch, PatchItems& items) const;
   void remake_items(const SetView& set, std::uint32_t patch, QueryTree::Change* change);
 

@@ -47,7 +47,7 @@ _STRUCTS = {
     "tsr_out t, tsr_out uv, tsr_out patch_uv, tsr_out position, tsr_out normal, tsr_out du, tsr_out dv, "
     "tsr_out residual",
     "tsr_point_scene_info": "uint64 memory_bytes, uint64 revision",
-    "tsr_query_points": "int32 is_double, int32 reserved, tsr_in position, tsr_in max_distance",
+    "tsr_query_points": "int32 is_double, int32 patches, tsr_in position, tsr_in max_distance",
     "tsr_nearest_out": "int32 is_double, int32 reserved, tsr_out kind, tsr_out flags, tsr_out surface, tsr_out patch, "
     "tsr_out distance, tsr_out uv, tsr_out patch_uv, tsr_out position, tsr_out normal",
     "tsr_solid_info": "uint64 open_borders, int32 is_closed, int32 reserved",

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import TypedArrays, array_of, check_out, in_view, out_view, records_of, vectors_of
+from ._arrays import TypedArrays, array_of, check_out, in_view, integer_of, out_view, records_of, vectors_of
 from ._calls import Handle, run
 from ._library import library, struct
 from .errors import ArgumentError, ArgumentTypeError
@@ -131,7 +131,7 @@ class Sides(TypedArrays):
 class _Points:
     """Points as the library takes them."""
 
-    def __init__(self, points: Any, max_distance: Any = None) -> None:
+    def __init__(self, points: Any, max_distance: Any = None, patches: int = 1) -> None:
         dtype = np.float32 if getattr(points, "dtype", None) == np.float32 else np.float64
         positions = vectors_of("points", points, dtype)
         self.shape: tuple[int, ...] = positions.shape[:-1]
@@ -151,6 +151,7 @@ class _Points:
                 positions, self.struct.is_double = positions.astype(np.float64), 1
             self._put("max_distance", reach.astype(positions.dtype, copy=False), 1)
         self._put("position", positions, 3)
+        self.struct.patches = patches
         self.count: int = self.struct.position.count
 
     def _put(self, name: str, array: np.ndarray, components: int) -> None:
@@ -199,16 +200,20 @@ class PointScene(Handle):
         max_distance: Any = None,
         quantities: Sequence[str] | None = None,
         out: NearestPoints | None = None,
+        patches: int | None = None,
     ) -> NearestPoints:
         """Returns the point of the surfaces, within their trimming loops, that is nearest to each of ``points``
         (..., 3). ``max_distance``: surfaces farther away count as none, one number or one per point; ``quantities``:
-        which; ``out``: where to write to."""
-        wanted = _Points(points, max_distance)
-        nearest = NearestPoints.empty(wanted.shape, quantities) if out is None else out
+        which; ``out``: where to write to; ``patches``: the nearest points of so many patches, in arrays (..., patches),
+        the nearest first."""
+        each = 1 if patches is None else integer_of("patches", patches, 1, 2**20)
+        wanted = _Points(points, max_distance, each)
+        shape = wanted.shape if patches is None else (*wanted.shape, each)
+        nearest = NearestPoints.empty(shape, quantities) if out is None else out
         check_out(nearest, NearestPoints)
         to = struct("tsr_nearest_out")
         to.is_double = 1
-        nearest._fill(to, wanted.shape)
+        nearest._fill(to, shape)
         run(
             library.tsr_point_scene_nearest,
             self._handle,

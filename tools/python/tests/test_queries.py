@@ -57,6 +57,12 @@ def test_shapes_and_types_of_points(ball):
     assert near.distance.shape == (3, 4) and near.uv.shape == (3, 4, 2) and near.position.shape == (3, 4, 3)
     assert (near.distance == scene.nearest(points.astype(np.float64)).distance).all()
     assert scene.nearest([3, 0, 0]).distance == pytest.approx(1)
+    several = scene.nearest(points, patches=3)
+    assert several.distance.shape == (*near.distance.shape, 3) and several.position.shape == (*near.distance.shape, 3, 3)
+    assert np.allclose(several.distance[..., 0], near.distance, rtol=0, atol=1e-14) and (np.diff(several.distance, axis=-1) >= 0).all()
+    assert all(len(set(patches)) == 3 for patches in several.patch.reshape(-1, 3))
+    with pytest.raises(ts.ArgumentError, match="patches is 0"):
+        scene.nearest(points, patches=0)
     assert scene.nearest(np.zeros((0, 3))).position.shape == (0, 3)
     records = np.zeros((12, 5))
     records[:, 1:4] = points.reshape(-1, 3)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "base/text.h"
@@ -15,7 +16,9 @@ namespace tessera { inline namespace abi_0_1 {
 /// Checks views one after the other and keeps the first error.
 class BatchChecks {
  public:
-  explicit BatchChecks(std::size_t records) : records_(records), checks_(records) {}
+  /// `outputs`: records that are written for each.
+  explicit BatchChecks(std::size_t records, std::size_t outputs = 1)
+      : records_(records), outputs_(records > no_limit / outputs ? no_limit : records * outputs), checks_(records) {}
 
   /// A view of stride 0 has one record for the whole batch.
   template <class T, int N>
@@ -31,7 +34,7 @@ class BatchChecks {
   template <class T, int N>
   void output(const char* name, const VectorView<T, N>& view) {
     if (std::ranges::all_of(view.component, [](const auto* memory) { return memory == nullptr; })) return;
-    checks_.add(name, view);
+    checks_.add(name, view, outputs_);
     has_output_ = true;
   }
   /// Returns the first error, also if no output is wanted. Without records nothing is checked.
@@ -43,7 +46,8 @@ class BatchChecks {
   }
 
  private:
-  std::size_t records_;
+  static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+  std::size_t records_, outputs_;
   ViewChecks checks_;
   Status error_;
   bool has_output_ = false;
