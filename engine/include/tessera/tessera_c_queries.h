@@ -89,14 +89,14 @@ typedef struct tsr_sides_out {
   tsr_out side;         /* uint8_t: TSR_SIDE_OUTSIDE, ... */
   tsr_out is_certified; /* uint8_t: 1 if the side is proven, unless the point lies on the surface up to rounding */
 } tsr_sides_out;
-/* Tells on which side each point lies. points->max_distance must be null data, and patches 0 or 1. Memory: 32 bytes per point during the
- * call. Errors: TSR_BUFFER_TOO_SMALL, TSR_STALE. */
+/* Tells on which side each point lies. points->max_distance must be null data, and patches 0 or 1. Memory: 32 bytes per
+ * point during the call. Errors: TSR_BUFFER_TOO_SMALL, TSR_STALE. */
 tsr_status tsr_solid_contains(const tsr_solid* solid, const tsr_query_points* points, const tsr_sides_out* sides,
                               const tsr_run* run);
 /* Writes the generalized winding number of each point, double: the solid angle that the surface covers, seen from
- * there, as a share of the whole sphere. A closed surface has 1 inside and 0 outside, an open one numbers in between; where
- * the surface is open, tsr_solid_contains() tells sides by them: inside above 0.5 in absolute value, unknown at 0.5
- * within 1e-6. NaN for a point that is not finite. solid.h tells how faces are turned. Otherwise as
+ * there, as a share of the whole sphere. A closed surface has 1 inside and 0 outside, an open one numbers in between;
+ * where the surface is open, tsr_solid_contains() tells sides by them: inside above 0.5 in absolute value, unknown at
+ * 0.5 within 1e-6. NaN for a point that is not finite. solid.h tells how faces are turned. Otherwise as
  * tsr_solid_contains(). */
 tsr_status tsr_solid_winding_numbers(const tsr_solid* solid, const tsr_query_points* points, const tsr_out* numbers,
                                      const tsr_run* run);
