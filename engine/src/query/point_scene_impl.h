@@ -74,7 +74,7 @@ template <class Position, class Find>
 Status PointScene::Impl::for_points(std::size_t count, const Execution& execution, const Position& position,
                                     const Find& find) const {
   // The more points lie together, the more of what they need is in the caches.
-  constexpr std::size_t fewest = 1024, most = 65536, tasks_per_thread = 4;
+  constexpr std::size_t fewest = 1024, most = 65536, tasks_per_thread = 2;
   const auto threads = static_cast<std::size_t>(arena_threads());
   const std::size_t points_per_task = std::clamp(count / (tasks_per_thread * threads), fewest, most);
   constexpr double cells = 1023;
