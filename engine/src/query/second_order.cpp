@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 
-#include "ray/line/first_order.h"
-
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+/// Returns the weights of a patch of degrees up to 3, 1 if it is not rational, for kernels of rational patches.
+const double* kernel_weights(const BezierPatch& patch) {
+  static constexpr std::array<double, 16> ones{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+  return patch.is_rational() ? patch.weights().data() : ones.data();
+}
 
 constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 

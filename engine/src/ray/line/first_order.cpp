@@ -107,8 +107,8 @@ FirstOrder first_order(const BezierPatch& patch, const Vec3& origin, const kerne
   kernel::RayPoint found;
   if (m == 3 && n == 3 && !patch.is_rational())
     kernels.cubic_point(points, &origin.x, u, v, found);
-  else if (std::max(m, n) <= 3)
-    kernels.low_rational_point(points, kernel_weights(patch), m, n, &origin.x, u, v, found);
+  else if (std::max(m, n) <= 3 && patch.is_rational())
+    kernels.low_rational_point(points, patch.weights().data(), m, n, &origin.x, u, v, found);
   else
     return first_order(patch, u, v, origin);
   return {triple(found.position), triple(found.du), triple(found.dv)};

@@ -1,8 +1,6 @@
 #pragma once
 // Position and first derivatives of a Bezier patch in fast scalar double code, for Newton's method.
 
-#include <array>
-
 #include "kernel/ray/ray_kernels.h"
 #include "tessera/bezier_patch.h"
 
@@ -16,11 +14,6 @@ struct FirstOrder {
 /// Evaluates at any finite (u,v). The position is less `origin`, which is subtracted from the control points. Agrees
 /// with evaluate_jet up to rounding.
 FirstOrder first_order(const BezierPatch& patch, double u, double v, const Vec3& origin = {});
-/// Returns the weights of a patch of degrees up to 3, 1 if it is not rational, for kernels of rational patches.
-inline const double* kernel_weights(const BezierPatch& patch) {
-  static constexpr std::array<double, 16> ones{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-  return patch.is_rational() ? patch.weights().data() : ones.data();
-}
 /// Evaluates at (u,v) in [0,1]^2, by kernels if they know the degrees.
 FirstOrder first_order(const BezierPatch& patch, const Vec3& origin, const kernel::RayKernels& kernels, double u,
                        double v);
