@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "io/step/step_index.h"
+#include "io/step/step_record.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
@@ -49,57 +52,6 @@ constexpr std::array<std::string_view, 13> others{"FACETED_BREP",
                                                   "SHELL_BASED_WIREFRAME_MODEL",
                                                   "TESSELLATED_CURVE_SET"};
 
-bool is_name(char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
-
-/// Reads instances such as "#7=BLOCK('',#8,1.,1.,1.);" and "#9=(A(1.)B(2.));".
-class KindCount {
- public:
-  explicit KindCount(std::string_view text) : text_(text) {}
-
-  StepKinds kinds() {
-    while (at_ < text_.size()) step();
-    return std::move(kinds_);
-  }
-
- private:
-  void step() {
-    const char c = text_[at_];
-    if (c == '\'' || c == '"') return skip_past(text_.substr(at_, 1));
-    if (text_.substr(at_, 2) == "/*") return skip_past("*/");
-    if (is_name(c)) return name();
-    if (c == '=') names_at_ = 0;
-    if (c == ';') names_at_ = -1, depth_ = 0;
-    if (c == ')') --depth_;
-    if (c == '(' && ++depth_ == 1 && names_at_ == 0) names_at_ = 1;  // no name before: one of several kinds
-    ++at_;
-  }
-
-  /// Goes on behind the next `end` after the first character.
-  void skip_past(std::string_view end) {
-    const std::size_t found = text_.find(end, at_ + 1);
-    at_ = found == std::string_view::npos ? text_.size() : found + end.size();
-  }
-
-  void name() {
-    const std::size_t begin = at_;
-    while (at_ < text_.size() && is_name(text_[at_])) ++at_;
-    if (depth_ != names_at_) return;
-    const std::string_view word = text_.substr(begin, at_ - begin);
-    const auto known = kinds_.find(word);
-    if (known == kinds_.end())
-      kinds_.emplace(word, 1);
-    else
-      ++known->second;
-    if (depth_ == 0) names_at_ = -1;
-  }
-
-  std::string_view text_;
-  std::size_t at_ = 0;
-  int depth_ = 0;      ///< of parentheses
-  int names_at_ = -1;  ///< the depth at which names are kinds; -1: none
-  StepKinds kinds_;
-};
-
 void append(std::string_view kind, std::size_t count, std::string& list) {
   list += (list.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(kind);
 }
@@ -113,8 +65,17 @@ std::string counts_of(const StepKinds& kinds, std::span<const std::string_view> 
 }  // namespace
 
 StepKinds step_kinds(std::string_view text) {
-  const std::size_t data = std::min(text.find("DATA"), text.size());
-  return KindCount(text.substr(data)).kinds();
+  StepKinds out;
+  const Result<StepIndex> index = StepIndex::make(text);
+  if (!index) return out;
+  for (const std::string_view kind : index->kinds())
+    if (const std::size_t count = index->of_kind(kind).size(); count > 0) out.emplace(kind, count);
+  StepRecord record;
+  for (const StepInstance& one : index->instances()) {
+    if (one.kind != StepIndex::several_kinds || !record.read(index->record(one)).ok()) continue;
+    for (std::size_t at = 0; at < record.size(); at = record[at].end) ++out[std::string(record[at].text)];
+  }
+  return out;
 }
 
 std::string unread_shapes(const StepKinds& kinds) { return counts_of(kinds, unread); }
