@@ -13,10 +13,8 @@
 #include "peers/interleaved.h"
 #include "peers/nearest_task.h"
 #include "peers/results.h"
+#include "peers/uniform_set.h"
 #include "support/random_patches.h"
-#include "support/synthetic_sets.h"
-#include "tessera/convert.h"
-#include "tessera/model.h"
 #include "tessera/nearest_points.h"
 
 namespace tessera::bench { namespace {
@@ -37,13 +35,6 @@ std::vector<Vec3> net_of() {
       net.push_back(
           {1.0 * i, 1.0 * j, 0.35 * std::sin(0.9 * i) * std::cos(0.7 * j) + 0.15 * std::sin(1.9 * i + 1.0 * j)});
   return net;
-}
-
-PatchSet set_of(const std::vector<Vec3>& net) {
-  std::vector<double> knots;
-  for (int k = -3; k <= spans + 3; ++k) knots.push_back(k);
-  const PatchGrid grid = value_of(to_bezier(value_of(BSplineSurface::polynomial(3, knots, 3, knots, net))));
-  return value_of(make_patch_set({&grid, 1}));
 }
 
 std::vector<Vec3> points_of(const PatchSet& set, bool near) {
@@ -138,7 +129,7 @@ int run() {
   std::printf("%-24s %-28s %10s %9s %9s %9s   %s\n", "", "", "k points/s", "points", "nearer", "farther",
               "Tessera is faster by");
   NearestTask task{.spans = spans, .net = net_of(), .points = {}};
-  const PatchSet set = set_of(task.net);
+  const PatchSet set = uniform_set(task.net, spans);
   task.size = set.box().diagonal();
   const int failed = compare(task, set, true);
   return failed != 0 ? failed : compare(task, set, false);

@@ -10,10 +10,8 @@
 #include "peers/interleaved.h"
 #include "peers/ray_tessera.h"
 #include "peers/results.h"
+#include "peers/uniform_set.h"
 #include "support/reference_rays.h"
-#include "support/synthetic_sets.h"
-#include "tessera/convert.h"
-#include "tessera/model.h"
 
 namespace tessera::bench { namespace {
 
@@ -33,13 +31,6 @@ std::vector<Vec3> net_of() {
     for (int j = 0; j < spans + 3; ++j)
       net.push_back({1.0 * i, 1.0 * j, 0.6 * std::sin(0.9 * i + 0.3 * j) + 0.4 * std::cos(0.7 * j - 0.2 * i)});
   return net;
-}
-
-PatchSet set_of(const std::vector<Vec3>& net) {
-  std::vector<double> knots;
-  for (int k = -3; k <= spans + 3; ++k) knots.push_back(k);
-  const PatchGrid grid = value_of(to_bezier(value_of(BSplineSurface::polynomial(3, knots, 3, knots, net))));
-  return value_of(make_patch_set({&grid, 1}));
 }
 
 /// Looks from above at a slant, so that waves hide waves.
@@ -124,7 +115,7 @@ int run() {
       "or are "
       "another sheet's, and distances along the ray, over the surface's size");
   std::vector<Vec3> net = net_of();
-  const PatchSet set = set_of(net);
+  const PatchSet set = uniform_set(net, spans);
   const RayTask task{spans, std::move(net), camera_of(set.box()), set.box(), set.box().diagonal(), set};
   std::vector<RayRun> runs = tessera_ray_runs(task);
   const std::size_t own = runs.size();

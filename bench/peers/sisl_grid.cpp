@@ -1,42 +1,11 @@
 // SISL's s1506 over a grid of a bicubic B-spline surface, as a program of its own: SISL is under the AGPL, so nothing
 // of Tessera is linked here, and Tessera's programs use this one through pipes (sisl_protocol.h).
 
-#include <sisl.h>
-#include <time.h>
-
-#include <cstdio>
 #include <vector>
 
-#include "sisl_protocol.h"
+#include "sisl_program.h"
 
 namespace {
-
-template <class T>
-bool read(T* values, std::size_t count) {
-  return std::fread(values, sizeof(T), count, stdin) == count;
-}
-template <class T>
-bool write(const T* values, std::size_t count) {
-  return std::fwrite(values, sizeof(T), count, stdout) == count && std::fflush(stdout) == 0;
-}
-
-/// See interleaved.h.
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// In SISL the first parameter runs fastest.
-SISLSurf* surface_of(const SislTask& task, const std::vector<double>& net) {
-  const int n = task.side;
-  std::vector<double> knots, points;
-  for (int k = 0; k < n + 4; ++k) knots.push_back(k - 3);
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < 3; ++c) points.push_back(net[static_cast<std::size_t>(3 * (i * n + j) + c)]);
-  return newSurf(n, n, 4, 4, knots.data(), knots.data(), points.data(), 1, 3, 1);
-}
 
 int serve(const SislTask& task, SISLSurf* surface, std::vector<double>& t) {
   const auto count = static_cast<std::size_t>(task.count), vectors = std::size_t{task.tangents ? 3u : 1u};
@@ -69,7 +38,7 @@ int main() {
   const auto side = static_cast<std::size_t>(task.side);
   std::vector<double> net(3 * side * side), t(static_cast<std::size_t>(task.count));
   if (!read(net.data(), net.size()) || !read(t.data(), t.size())) return 1;
-  SISLSurf* surface = surface_of(task, net);
+  SISLSurf* surface = surface_of(task.side, net);
   if (surface == nullptr) return 1;
   const int status = serve(task, surface, t);
   freeSurf(surface);
