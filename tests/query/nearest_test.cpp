@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -10,7 +11,9 @@
 #include "support/random_patches.h"
 #include "support/ray_classes.h"
 #include "support/torus.h"
+#include "tessera/model.h"
 #include "tessera/nearest_points.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test { namespace {
 
@@ -37,6 +40,48 @@ TEST(Nearest, OfASphereAlongTheRadius) {
     EXPECT_NEAR(found.distance, std::abs(length(point) - 1), 2e-15 * (1 + radius));
     EXPECT_LE(length(found.position - normalized(point)), 1e-14 / std::min(radius, 1.0));
     EXPECT_NEAR(std::abs(dot(found.normal, direction)), 1, 1e-12);
+  }
+}
+
+/// Distances in the half plane of an axis: (distance from the axis, height).
+double segment_distance(double x0, double z0, double x1, double z1, double x, double z) {
+  const double dx = x1 - x0, dz = z1 - z0;
+  const double share = std::clamp(((x - x0) * dx + (z - z0) * dz) / (dx * dx + dz * dz), 0.0, 1.0);
+  return std::hypot(x - x0 - share * dx, z - z0 - share * dz);
+}
+
+template <class Distance>
+void expect_revolved(const BSplineSurface& surface, const Axis& axis, const Distance& expected) {
+  Model model;
+  model.surfaces.push_back({.name = std::string("revolved"), .surface = surface});
+  const PatchSet set = value_of(make_patch_set(model));
+  const PointScene scene = value_of(PointScene::make(set));
+  const double size = set.box().diagonal();
+  Random random(8);
+  std::size_t certified = 0;
+  constexpr std::size_t count = 2000;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 point = axis.origin + rays::power(random, 0.01, 20) * uniform_vector(random, -1, 1);
+    const Vec3 from = point - axis.origin;
+    const double height = dot(from, axis.direction), radius = length(from - height * axis.direction);
+    const NearestPoint found = scene.nearest(point);
+    ASSERT_EQ(found.kind, NearestKind::found);
+    EXPECT_NEAR(found.distance, expected(radius, height), 1e-14 * (size + length(from)));
+    certified += found.flags.certified;
+  }
+  EXPECT_GE(certified * 100, count * 97);  // beside the axis the surface is as far away all around
+}
+
+TEST(Nearest, OfSurfacesOfRevolution) {
+  const Axis axis{.origin = {0.3, -0.2, 0.5}, .direction = normalized({0.2, -0.5, 1}), .zero = {1, 0, 0}};
+  expect_revolved(value_of(make_nurbs_torus(axis, 1, 0.3)), axis,
+                  [](double x, double z) { return std::abs(std::hypot(x - 1, z) - 0.3); });
+  const Vec3 across = normalized(axis.zero - dot(axis.zero, axis.direction) * axis.direction);
+  const auto place = [&](double x, double z) { return axis.origin + x * across + z * axis.direction; };
+  for (const double top : {1.0, 0.25}) {  // a cylinder, a cone
+    const Curve profile = value_of(Curve::bezier(std::vector<Vec3>{place(1, -1), place(top, 1)}));
+    expect_revolved(value_of(make_surface_of_revolution(profile, axis)), axis,
+                    [&](double x, double z) { return segment_distance(1, -1, top, 1, x, z); });
   }
 }
 
