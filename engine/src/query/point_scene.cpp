@@ -107,11 +107,17 @@ void PointScene::Impl::nearest_patches(const Vec3& point, double max_distance, N
     nearest[k] = k < search.places().size() ? point_of(search.places()[k], found) : none;
 }
 
-void PointScene::Impl::append_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
-                                     std::vector<NearestPoint>& places) const {
+void PointScene::Impl::find_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
+                                   Places& places) const {
   if (!is_valid(point)) return;
   const NearestSearch::Outcome outcome = search.run_all(path, point, distance);
-  for (const NearCandidate& one : search.places()) places.push_back(point_of(one, outcome));
+  for (const NearCandidate& one : search.places()) {
+    const NearestPoint made = point_of(one, outcome);
+    if (std::exchange(places.has_first, true))
+      places.others.push_back(made);
+    else
+      places.first = made;
+  }
 }
 
 PointScene::PointScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -183,16 +189,17 @@ Status PointScene::places(std::span<const Vec3> points, double distance, Surface
     if (!(distance > 0 && distance <= max_share * impl_->size()))
       return {StatusCode::invalid_argument, "the distance of places must be above 0 and at most 1e-3 of the size, " +
                                                 text(max_share * impl_->size()) + ", found " + text(distance)};
-    std::vector<std::vector<NearestPoint>> found(points.size());
+    std::vector<Impl::Places> found(points.size());
     const auto at = [&](std::size_t k) { return points[k]; };
     const Status status = impl_->for_points(points.size(), execution, at,
                                             [&](std::size_t k, NearestSearch& search, QueryTree::Path& path) {
-                                              impl_->append_places(points[k], distance, search, path, found[k]);
+                                              impl_->find_places(points[k], distance, search, path, found[k]);
                                             });
     if (!status.ok()) return status;
     places.first.push_back(0);
-    for (const std::vector<NearestPoint>& one : found) {
-      places.places.insert(places.places.end(), one.begin(), one.end());
+    for (const Impl::Places& one : found) {
+      if (one.has_first) places.places.push_back(one.first);
+      places.places.insert(places.places.end(), one.others.begin(), one.others.end());
       places.first.push_back(places.places.size());
     }
     return {};

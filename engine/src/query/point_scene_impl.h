@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "parallel/caller_arena.h"
 #include "parallel/parallel_for.h"
@@ -36,9 +37,15 @@ class PointScene::Impl {
   /// Fills `nearest` with the nearest points of as many patches.
   void nearest_patches(const Vec3& point, double max_distance, NearestSearch& search, QueryTree::Path& path,
                        std::span<NearestPoint> nearest) const;
-  /// Appends all places within a distance.
-  void append_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
-                     std::vector<NearestPoint>& places) const;
+  /// The places of a point, one of most.
+  struct Places {
+    bool has_first = false;
+    NearestPoint first;
+    std::vector<NearestPoint> others;
+  };
+  /// Finds all places within a distance; `places` must be empty.
+  void find_places(const Vec3& point, double distance, NearestSearch& search, QueryTree::Path& path,
+                   Places& places) const;
   double size() const { return size_; }
 
   void keep(PatchSet&& set) { kept_.emplace(std::move(set)); }
