@@ -25,91 +25,15 @@ namespace {
 
 using opencascade::handle;
 
-/// Orthogonal axes of unit length, left- or right-handed.
-struct Frame {
-  Vec3 origin, x, y, z;
-
-  Frame(const gp_Ax3& axes)
-      : origin(vec3(axes.Location().XYZ())),
-        x(vec3(axes.XDirection().XYZ())),
-        y(vec3(axes.YDirection().XYZ())),
-        z(vec3(axes.Direction().XYZ())) {}
-  Vec3 at(const Vec3& p) const { return origin + (p.x * x + p.y * y) + p.z * z; }
-  Vec3 local(const Vec3& p) const {
-    const Vec3 d = p - origin;
-    return {dot(d, x), dot(d, y), dot(d, z)};
-  }
-};
-
-Interval range_u(const Domain& box) { return {box.u0, box.u1}; }
-Interval range_v(const Domain& box) { return {box.v0, box.v1}; }
-
-Result<FaceSurface> made(Result<BSplineSurface> surface, const Reparametrization& parameters, double fit_error = 0) {
-  if (!surface) return surface.status();
-  return FaceSurface{*std::move(surface), parameters, fit_error};
-}
-
-/// Revolves `profile`, which runs along v with points in the frame's coordinates, about the frame's z by the angles u.
-Result<FaceSurface> revolved(const Frame& frame, const Interval& angles, const SplineLine& profile) {
-  const Arcs turn(angles.from, angles.to);
-  std::vector<Vec3> points;
-  std::vector<double> weights;
-  for (const Arcs::Point& arc : turn.points())
-    for (std::size_t k = 0; k < profile.points.size(); ++k) {
-      const Vec3& p = profile.points[k];
-      points.push_back(frame.at({arc.cosine * p.x - arc.sine * p.y, arc.sine * p.x + arc.cosine * p.y, p.z}));
-      weights.push_back(arc.weight * profile.weight(k));
-    }
-  const Domain domain{angles.from, angles.to, profile.range.from, profile.range.to};
-  return made(BSplineSurface::rational(2, turn.knots(), profile.degree, profile.knots, points, weights, domain),
-              {turn, profile.arcs}, profile.fit_error);
-}
-
-/// Moves `profile`, which runs along u, by v times `direction`.
-Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, const Interval& range) {
-  std::vector<Vec3> points;
-  std::vector<double> weights;
-  for (std::size_t k = 0; k < profile.points.size(); ++k)
-    for (const double v : {range.from, range.to}) {
-      points.push_back(profile.points[k] + v * direction);
-      weights.push_back(profile.weight(k));
-    }
-  const std::vector<double> knots_v{range.from, range.from, range.to, range.to};
-  const Domain domain{profile.range.from, profile.range.to, range.from, range.to};
-  return made(BSplineSurface::rational(profile.degree, profile.knots, 1, knots_v, points, weights, domain),
-              {profile.arcs, {}}, profile.fit_error);
-}
-
-Result<FaceSurface> from_plane(const gp_Pln& plane, const Domain& box) {
-  const Frame frame(plane.Position());
-  return extruded(straight_line(frame.at({box.u0, 0, 0}), frame.at({box.u1, 0, 0}), range_u(box)), frame.y,
-                  range_v(box));
-}
-
-Result<FaceSurface> from_cylinder(const gp_Cylinder& cylinder, const Domain& box) {
-  const double r = cylinder.Radius();
-  return revolved(cylinder.Position(), range_u(box), straight_line({r, 0, box.v0}, {r, 0, box.v1}, range_v(box)));
-}
-
-Result<FaceSurface> from_cone(const gp_Cone& cone, const Domain& box) {
-  const double s = std::sin(cone.SemiAngle()), c = std::cos(cone.SemiAngle());
-  std::array<double, 2> radii{cone.RefRadius() + box.v0 * s, cone.RefRadius() + box.v1 * s};
-  const double largest = std::max(std::abs(radii[0]), std::abs(radii[1]));
-  for (double& radius : radii)
-    if (std::abs(radius) < 1e-12 * largest) radius = 0;  // the apex
-  return revolved(cone.Position(), range_u(box),
-                  straight_line({radii[0], 0, box.v0 * c}, {radii[1], 0, box.v1 * c}, range_v(box)));
-}
-
-/// Revolves a circle of radius `minor`, whose centre is `major` away from the axis, about the axis.
-Result<FaceSurface> from_turned_circle(const gp_Ax3& axes, double major, double minor, const Domain& box) {
-  return revolved(axes, range_u(box), ellipse_arcs({major, 0, 0}, {minor, 0, 0}, {0, 0, minor}, range_v(box)));
+Frame frame_of(const gp_Ax3& axes) {
+  return {vec3(axes.Location().XYZ()), vec3(axes.XDirection().XYZ()), vec3(axes.YDirection().XYZ()),
+          vec3(axes.Direction().XYZ())};
 }
 
 Result<FaceSurface> from_revolution(const Geom_SurfaceOfRevolution& surface, const Domain& box) {
   Result<SplineLine> profile = spline_line(surface.BasisCurve(), range_v(box));
   if (!profile) return profile.status();
-  const Frame frame(gp_Ax3(surface.Axis().Location(), surface.Axis().Direction()));
+  const Frame frame = frame_of(gp_Ax3(surface.Axis().Location(), surface.Axis().Direction()));
   for (Vec3& p : profile->points) p = frame.local(p);
   return revolved(frame, range_u(box), *profile);
 }
@@ -208,16 +132,17 @@ Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain
   const GeomAdaptor_Surface adaptor(surface);
   switch (adaptor.GetType()) {
     case GeomAbs_Plane:
-      return from_plane(adaptor.Plane(), box);
+      return plane_surface(frame_of(adaptor.Plane().Position()), box);
     case GeomAbs_Cylinder:
-      return from_cylinder(adaptor.Cylinder(), box);
+      return cylinder_surface(frame_of(adaptor.Cylinder().Position()), adaptor.Cylinder().Radius(), box);
     case GeomAbs_Cone:
-      return from_cone(adaptor.Cone(), box);
+      return cone_surface(frame_of(adaptor.Cone().Position()), adaptor.Cone().RefRadius(), adaptor.Cone().SemiAngle(),
+                          box);
     case GeomAbs_Sphere:
-      return from_turned_circle(adaptor.Sphere().Position(), 0, adaptor.Sphere().Radius(), box);
+      return torus_surface(frame_of(adaptor.Sphere().Position()), 0, adaptor.Sphere().Radius(), box);
     case GeomAbs_Torus:
-      return from_turned_circle(adaptor.Torus().Position(), adaptor.Torus().MajorRadius(),
-                                adaptor.Torus().MinorRadius(), box);
+      return torus_surface(frame_of(adaptor.Torus().Position()), adaptor.Torus().MajorRadius(),
+                           adaptor.Torus().MinorRadius(), box);
     default:
       return fitted(surface, box);
   }

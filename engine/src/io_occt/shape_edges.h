@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "io_occt/arcs.h"
+#include "io/exact/arcs.h"
 #include "io_occt/trim_curve.h"
 #include "tessera/model.h"
 

@@ -44,17 +44,6 @@ SplineLine from_bezier(const Geom_BezierCurve& curve, const Interval& range) {
   return out;
 }
 
-/// The parabola vertex + t^2/(4 f) x + t y; its blossom gives the control points.
-SplineLine from_parabola(const gp_Parab& parabola, const Interval& range) {
-  const Vec3 vertex = vec3(parabola.Location().XYZ()), x = vec3(parabola.XAxis().Direction().XYZ()),
-             y = vec3(parabola.YAxis().Direction().XYZ());
-  const auto blossom = [&](double s, double t) {
-    return vertex + s * t / (4 * parabola.Focal()) * x + 0.5 * (s + t) * y;
-  };
-  const double a = range.from, b = range.to;
-  return {2, {a, a, a, b, b, b}, {blossom(a, a), blossom(a, b), blossom(b, b)}, {}, range, {}, 0};
-}
-
 Result<SplineLine> fitted(const handle<Geom_Curve>& curve, const Interval& range) {
   double length_bound = 0;
   gp_Pnt before = curve->Value(range.from);
@@ -116,20 +105,6 @@ PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, co
   return line;
 }
 
-SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range) {
-  return {1, {range.from, range.from, range.to, range.to}, {start, end}, {}, range, {}, 0};
-}
-
-SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range) {
-  const Arcs arcs(range.from, range.to);
-  SplineLine line{2, arcs.knots(), {}, {}, range, arcs, 0};
-  for (const Arcs::Point& p : arcs.points()) {
-    line.points.push_back(centre + (p.cosine * x + p.sine * y));
-    line.weights.push_back(p.weight);
-  }
-  return line;
-}
-
 Result<SplineLine> spline_line(const handle<Geom_Curve>& given, const Interval& range) {
   handle<Geom_Curve> curve = given;
   while (const auto trimmed = handle<Geom_TrimmedCurve>::DownCast(curve)) curve = trimmed->BasisCurve();
@@ -148,7 +123,8 @@ Result<SplineLine> spline_line(const handle<Geom_Curve>& given, const Interval& 
     case GeomAbs_Ellipse:
       return arcs(adaptor.Ellipse().Position(), adaptor.Ellipse().MajorRadius(), adaptor.Ellipse().MinorRadius());
     case GeomAbs_Parabola:
-      return from_parabola(adaptor.Parabola(), range);
+      return parabola_arc(vec3(adaptor.Parabola().Location().XYZ()), vec3(adaptor.Parabola().XAxis().Direction().XYZ()),
+                          vec3(adaptor.Parabola().YAxis().Direction().XYZ()), adaptor.Parabola().Focal(), range);
     default:
       return fitted(curve, range);
   }

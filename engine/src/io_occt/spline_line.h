@@ -4,10 +4,9 @@
 #include <opencascade/Geom_Curve.hxx>
 #include <opencascade/TColStd_Array1OfReal.hxx>
 #include <opencascade/gp_XYZ.hxx>
-#include <optional>
 #include <vector>
 
-#include "io_occt/arcs.h"
+#include "io/exact/spline_line.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
@@ -32,24 +31,6 @@ struct PoleCircle {
 };
 /// Unrolls a periodic spline over [from, to], with repeated poles on unclamped knots: no pole is computed.
 PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, const Interval& range);
-
-/// A curve over an interval. Points may have weights (empty: none).
-struct SplineLine {
-  int degree = 1;
-  std::vector<double> knots;
-  std::vector<Vec3> points;
-  std::vector<double> weights;
-  Interval range;
-  std::optional<Arcs> arcs;  ///< maps the caller's parameter, an angle, to ours; empty: they are equal
-  double fit_error = 0;      ///< 0: exact
-
-  double weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
-};
-
-/// The straight line with these ends at the ends of the range.
-SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range);
-/// The ellipse centre + cos(t) x + sin(t) y.
-SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
 
 /// Converts a curve exactly. Exceptions: offset curves and hyperbolas, which are fitted to within 1e-6 of their length.
 /// May throw Standard_Failure.

@@ -1,4 +1,4 @@
-#include "io_occt/arcs.h"
+#include "io/exact/arcs.h"
 
 #include <algorithm>
 #include <cmath>

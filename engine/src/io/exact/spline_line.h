@@ -1,0 +1,33 @@
+#pragma once
+// Curves of CAD files over an interval as NURBS: profiles of surfaces, and curves for themselves.
+
+#include <optional>
+#include <vector>
+
+#include "io/exact/arcs.h"
+#include "tessera/curve.h"
+#include "tessera/geometry.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// A curve over an interval. Points may have weights (empty: none).
+struct SplineLine {
+  int degree = 1;
+  std::vector<double> knots;
+  std::vector<Vec3> points;
+  std::vector<double> weights;
+  Interval range;
+  std::optional<Arcs> arcs;  ///< maps the caller's parameter, an angle, to ours; empty: they are equal
+  double fit_error = 0;      ///< 0: exact
+
+  double weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
+};
+
+/// The straight line with these ends at the ends of the range.
+SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range);
+/// The ellipse centre + cos(t) x + sin(t) y.
+SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
+/// The parabola vertex + t^2/(4 focal) x + t y.
+SplineLine parabola_arc(const Vec3& vertex, const Vec3& x, const Vec3& y, double focal, const Interval& range);
+
+}}  // namespace tessera::abi_0_1
