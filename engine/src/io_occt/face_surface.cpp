@@ -57,7 +57,7 @@ Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain
       points.push_back(vec3(surface.Pole(i + 1, j + 1).XYZ()));
       if (rational) weights.push_back(surface.Weight(i + 1, j + 1));
     }
-  const Interval part_u = u.covered(range_u(box)), part_v = v.covered(range_v(box));
+  const Interval part_u = covered(u.knots, u.degree, range_u(box)), part_v = covered(v.knots, v.degree, range_v(box));
   const Domain domain{part_u.from, part_u.to, part_v.from, part_v.to};
   return made(rational ? BSplineSurface::rational(u.degree, u.knots, v.degree, v.knots, points, weights, domain)
                        : BSplineSurface::polynomial(u.degree, u.knots, v.degree, v.knots, points, domain),

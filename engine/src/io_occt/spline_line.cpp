@@ -26,7 +26,7 @@ SplineLine from_spline(const Geom_BSplineCurve& curve, const Interval& range) {
     out.points.push_back(vec3(curve.Pole(pole + 1).XYZ()));
     if (curve.IsRational()) out.weights.push_back(curve.Weight(pole + 1));
   }
-  out.range = line.covered(range);
+  out.range = covered(line.knots, line.degree, range);
   out.knots = std::move(line.knots);
   return out;
 }
@@ -65,18 +65,6 @@ Result<SplineLine> fitted(const handle<Geom_Curve>& curve, const Interval& range
 }
 
 }  // namespace
-
-Interval PoleLine::covered(const Interval& range) const {
-  // An end that equals a knot up to the rounding of a period must be that knot: otherwise a patch would lie between
-  // them.
-  const double tiny = 1e-12 * (range.to - range.from);
-  const auto settled = [&](double end) {
-    const auto knot = std::lower_bound(knots.begin(), knots.end(), end - tiny);
-    return knot != knots.end() && *knot <= end + tiny ? *knot : end;
-  };
-  return {std::max(settled(range.from), knots[static_cast<std::size_t>(degree)]),
-          std::min(settled(range.to), knots[poles.size()])};
-}
 
 PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, const Interval& range) {
   PoleLine line;

@@ -20,8 +20,6 @@ struct PoleLine {
   int degree = 1;
   std::vector<double> knots;
   std::vector<int> poles;
-  /// The part of [from, to] that the knots cover.
-  Interval covered(const Interval& range) const;
 };
 
 /// One direction of a spline in OpenCASCADE: `flat` is its KnotSequence; the period is 0 if it has none.

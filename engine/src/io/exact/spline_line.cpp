@@ -1,5 +1,7 @@
 #include "io/exact/spline_line.h"
 
+#include <algorithm>
+
 namespace tessera { inline namespace abi_0_1 {
 
 SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range) {
@@ -21,6 +23,16 @@ SplineLine parabola_arc(const Vec3& vertex, const Vec3& x, const Vec3& y, double
   const auto blossom = [&](double s, double t) { return vertex + s * t / (4 * focal) * x + 0.5 * (s + t) * y; };
   const double a = range.from, b = range.to;
   return {2, {a, a, a, b, b, b}, {blossom(a, a), blossom(a, b), blossom(b, b)}, {}, range, {}, 0};
+}
+
+Interval covered(std::span<const double> knots, int degree, const Interval& range) {
+  const double tiny = 1e-12 * (range.to - range.from);
+  const auto settled = [&](double end) {
+    const auto knot = std::lower_bound(knots.begin(), knots.end(), end - tiny);
+    return knot != knots.end() && *knot <= end + tiny ? *knot : end;
+  };
+  const auto p = static_cast<std::size_t>(degree);
+  return {std::max(settled(range.from), knots[p]), std::min(settled(range.to), knots[knots.size() - p - 1])};
 }
 
 }}  // namespace tessera::abi_0_1

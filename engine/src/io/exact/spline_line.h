@@ -2,6 +2,7 @@
 // Curves of CAD files over an interval as NURBS: profiles of surfaces, and curves for themselves.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/exact/arcs.h"
@@ -29,5 +30,9 @@ SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& ran
 SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
 /// The parabola vertex + t^2/(4 focal) x + t y.
 SplineLine parabola_arc(const Vec3& vertex, const Vec3& x, const Vec3& y, double focal, const Interval& range);
+
+/// Returns the part of a range that the knots of a spline cover. An end that equals a knot up to the rounding of a
+/// period becomes that knot: otherwise a patch would lie between them.
+Interval covered(std::span<const double> knots, int degree, const Interval& range);
 
 }}  // namespace tessera::abi_0_1

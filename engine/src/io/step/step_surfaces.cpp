@@ -1,0 +1,220 @@
+// Surfaces of StepGeometry.
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "io/step/step_geometry.h"
+#include "io/step/step_splines.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+
+Status check_box(const StepEntity& entity, const Domain& box) {
+  const bool is_finite = std::isfinite(box.u1 - box.u0) && std::isfinite(box.v1 - box.v0);
+  if (is_finite && box.u0 < box.u1 && box.v0 < box.v1) return {};
+  return entity.error("a rectangle of its parameters must not be empty", StatusCode::invalid_argument);
+}
+
+/// Angles must be moderate numbers, and span at most a full turn.
+Status check_angles(const StepEntity& entity, const Interval& angles) {
+  if (angles.to - angles.from <= turn * (1 + 1e-12) && std::abs(angles.from) <= max_angle) return {};
+  return entity.error("an interval of angles must not be longer than a full turn", StatusCode::invalid_argument);
+}
+
+Status needs_box(const StepEntity& entity) {
+  return entity.error("is unbounded and needs a rectangle of its parameters", StatusCode::invalid_argument);
+}
+
+bool is_torus(const StepEntity& entity) {
+  return entity.is("TOROIDAL_SURFACE") || entity.is("DEGENERATE_TOROIDAL_SURFACE");
+}
+
+bool is_elementary(const StepEntity& entity) {
+  return entity.is("PLANE") || entity.is("CYLINDRICAL_SURFACE") || entity.is("CONICAL_SURFACE") ||
+         entity.is("SPHERICAL_SURFACE") || is_torus(entity);
+}
+
+/// Returns all of a closed surface. Degenerate tori have the part on one side of where they meet themselves.
+Domain closed_box(StepEntity& entity, double major, double minor) {
+  if (entity.is("SPHERICAL_SURFACE")) return {0, turn, -turn / 4, turn / 4};
+  if (!entity.is("DEGENERATE_TOROIDAL_SURFACE") || major >= minor) return {0, turn, 0, turn};
+  const double meeting = std::acos(-major / minor);
+  return entity.logical(entity.attribute(4)) ? Domain{0, turn, -meeting, meeting}
+                                             : Domain{0, turn, meeting, turn - meeting};
+}
+
+/// Knots and weights of a spline surface, whose points are read elsewhere.
+struct Net {
+  int degree_u = 1, degree_v = 1;
+  std::size_t count_u = 0, count_v = 0;
+  std::vector<double> knots_u, knots_v, weights;
+};
+
+void read_weights(StepEntity& entity, Net& net) {
+  if (!entity.is("RATIONAL_B_SPLINE_SURFACE")) return;
+  for (const std::size_t row : entity.list(entity.attribute(entity.part("RATIONAL_B_SPLINE_SURFACE"), 0))) {
+    const std::vector<double> weights = entity.reals(row);
+    if (weights.size() != net.count_v)
+      entity.fail("a row has " + std::to_string(weights.size()) + " weights, expected " + std::to_string(net.count_v));
+    net.weights.insert(net.weights.end(), weights.begin(), weights.end());
+  }
+  if (net.weights.size() != net.count_u * net.count_v)
+    entity.fail("has " + std::to_string(net.weights.size()) + " weights for " +
+                std::to_string(net.count_u * net.count_v) + " points");
+}
+
+}  // namespace
+
+Result<FaceSurface> StepGeometry::surface(std::uint64_t number, const std::optional<Domain>& box) const {
+  Result<FaceSurface> made = face(number, box, 0);
+  // Errors of splines do not name the entity yet; all others begin with its number.
+  if (made || made.status().message().starts_with('#')) return made;
+  return StepEntity(index_, number).named(made.status());
+}
+
+Result<FaceSurface> StepGeometry::face(std::uint64_t number, const std::optional<Domain>& box, int depth) const {
+  StepEntity entity(index_, number);
+  if (depth > max_depth) entity.fail("is made of too many surfaces, or of itself");
+  if (!entity.status().ok()) return entity.status();
+  if (box)
+    if (Status status = check_box(entity, *box); !status.ok()) return status;
+  if (is_elementary(entity)) return elementary(entity, box);
+  if (is_step_spline(entity, "SURFACE")) return spline_face(entity, box);
+  if (entity.is("SURFACE_OF_LINEAR_EXTRUSION") || entity.is("SURFACE_OF_REVOLUTION")) return swept(entity, box, depth);
+  if (entity.is("RECTANGULAR_TRIMMED_SURFACE")) return trimmed_face(entity, box, depth);
+  return entity.error("is no surface that can be converted", StatusCode::unsupported);
+}
+
+Result<FaceSurface> StepGeometry::elementary(StepEntity& entity, const std::optional<Domain>& given) const {
+  const bool is_plane = entity.is("PLANE"), is_cone = entity.is("CONICAL_SURFACE"), is_round = is_torus(entity);
+  const std::uint64_t position = entity.reference(entity.attribute(1));
+  const double radius = is_plane ? 1 : units_.length * entity.real(entity.attribute(2));
+  const double second = is_cone || is_round ? entity.real(entity.attribute(3)) : 1;
+  const double half_angle = is_cone ? units_.angle * second : 0;
+  if (!(radius > 0) && !(is_cone && radius == 0)) entity.fail("its radius must be positive");
+  if (is_round && !(second > 0)) entity.fail("its radii must be positive");
+  if (is_cone && !(std::abs(half_angle) < turn / 4)) entity.fail("its half angle must be less than a right angle");
+  if (!entity.status().ok()) return entity.status();
+  const bool is_closed = is_round || entity.is("SPHERICAL_SURFACE");
+  if (!given && !is_closed) return needs_box(entity);
+  const Domain box = given ? *given : closed_box(entity, radius, second * units_.length);
+  if (!entity.status().ok()) return entity.status();
+  if (Status status = is_plane ? Status() : check_angles(entity, range_u(box)); !status.ok()) return status;
+  if (Status status = is_closed ? check_angles(entity, range_v(box)) : Status(); !status.ok()) return status;
+  const Result<Frame> frame = placement(position);
+  if (!frame) return frame.status();
+  if (is_plane) return plane_surface(*frame, box);
+  if (is_cone) return cone_surface(*frame, radius, half_angle, box);
+  if (is_round) return torus_surface(*frame, radius, second * units_.length, box);
+  return is_closed ? torus_surface(*frame, 0, radius, box) : cylinder_surface(*frame, radius, box);
+}
+
+Result<FaceSurface> StepGeometry::swept(StepEntity& entity, const std::optional<Domain>& box, int depth) const {
+  const bool is_turned = entity.is("SURFACE_OF_REVOLUTION");
+  const std::uint64_t along = entity.reference(entity.attribute(1)), by = entity.reference(entity.attribute(2));
+  if (!entity.status().ok()) return entity.status();
+  if (!box && !is_turned) return needs_box(entity);
+  const Range part = box ? Range(is_turned ? range_v(*box) : range_u(*box)) : Range();
+  Result<SplineLine> profile = line(along, part, depth + 1);
+  if (!profile) return profile.status();
+  if (!is_turned) {
+    const Result<Vec3> direction = vector(by);
+    if (!direction) return direction.status();
+    return extruded(*profile, normalized(*direction), range_v(*box));
+  }
+  const Interval angles = box ? range_u(*box) : Interval{0, turn};
+  if (Status status = check_angles(entity, angles); !status.ok()) return status;
+  const Result<Frame> frame = placement(by);
+  if (!frame) return frame.status();
+  for (Vec3& p : profile->points) p = frame->local(p);
+  return revolved(*frame, angles, *profile);
+}
+
+Result<FaceSurface> StepGeometry::spline_face(StepEntity& entity, const std::optional<Domain>& box) const {
+  const SplineAttributes place = spline_attributes(entity, "SURFACE");
+  Net net;
+  net.degree_u = entity.integer(entity.attribute(place.spline, place.spline_at));
+  net.degree_v = entity.integer(entity.attribute(place.spline, place.spline_at + 1));
+  std::vector<Vec3> poles;
+  for (const std::size_t row : entity.list(entity.attribute(place.spline, place.spline_at + 2))) {
+    const Result<std::vector<Vec3>> some = points(entity, row);
+    if (!some) return some.status();
+    if (net.count_u++ == 0) net.count_v = some->size();
+    if (some->size() != net.count_v)
+      return entity.error("row " + std::to_string(net.count_u) + " has " + std::to_string(some->size()) +
+                          " points, row 1 has " + std::to_string(net.count_v));
+    poles.insert(poles.end(), some->begin(), some->end());
+  }
+  if (!check_degree(entity, net.degree_u, net.count_u) || !check_degree(entity, net.degree_v, net.count_v))
+    return entity.status();
+  net.knots_u = step_knots(entity, "SURFACE", net.degree_u, net.count_u, 0);
+  net.knots_v = step_knots(entity, "SURFACE", net.degree_v, net.count_v, 1);
+  read_weights(entity, net);
+  if (!entity.status().ok()) return entity.status();
+  std::optional<Domain> part;
+  if (box) {
+    const Interval u = covered(net.knots_u, net.degree_u, range_u(*box));
+    const Interval v = covered(net.knots_v, net.degree_v, range_v(*box));
+    part = Domain{u.from, u.to, v.from, v.to};
+    if (Status status = check_box(entity, *part); !status.ok()) return status;
+  }
+  Result<BSplineSurface> spline =
+      net.weights.empty()
+          ? BSplineSurface::polynomial(net.degree_u, net.knots_u, net.degree_v, net.knots_v, std::move(poles), part)
+          : BSplineSurface::rational(net.degree_u, net.knots_u, net.degree_v, net.knots_v, std::move(poles),
+                                     std::move(net.weights), part);
+  if (!spline) return entity.named(spline.status());
+  return made(std::move(spline), {});
+}
+
+/// Returns the factors from the file's parameters to ours, (u1, v1) of a rectangle from 0.
+Result<Domain> StepGeometry::trim_scales(std::uint64_t number, int depth) const {
+  StepEntity entity(index_, number);
+  if (depth > max_depth) entity.fail("is made of too many surfaces, or of itself");
+  const double length = units_.length, angle = units_.angle;
+  if (!entity.status().ok()) return entity.status();
+  if (entity.is("PLANE")) return Domain{0, length, 0, length};
+  if (entity.is("CYLINDRICAL_SURFACE")) return Domain{0, angle, 0, length};
+  if (entity.is("SPHERICAL_SURFACE") || is_torus(entity)) return Domain{0, angle, 0, angle};
+  if (entity.is("CONICAL_SURFACE")) {
+    const double half_angle = angle * entity.real(entity.attribute(3));
+    if (!entity.status().ok()) return entity.status();
+    return Domain{0, angle, 0, length / std::cos(half_angle)};
+  }
+  const bool is_turned = entity.is("SURFACE_OF_REVOLUTION"), is_trimmed = entity.is("RECTANGULAR_TRIMMED_SURFACE");
+  if (!is_turned && !is_trimmed && !entity.is("SURFACE_OF_LINEAR_EXTRUSION")) return Domain{};
+  const std::uint64_t along = entity.reference(entity.attribute(1));
+  const std::uint64_t by = is_trimmed ? 0 : entity.reference(entity.attribute(2));
+  if (!entity.status().ok()) return entity.status();
+  if (is_trimmed) return trim_scales(along, depth + 1);
+  const Result<double> scale = curve_scale(along, depth + 1);
+  if (!scale) return scale.status();
+  if (is_turned) return Domain{0, angle, 0, *scale};
+  const Result<Vec3> direction = vector(by);
+  if (!direction) return direction.status();
+  return Domain{0, *scale, 0, tessera::length(*direction)};
+}
+
+Result<FaceSurface> StepGeometry::trimmed_face(StepEntity& entity, const std::optional<Domain>& box, int depth) const {
+  const std::uint64_t basis = entity.reference(entity.attribute(1));
+  std::array<double, 4> trims{};
+  for (std::size_t k = 0; k < 4; ++k) trims[k] = entity.real(entity.attribute(2 + k));
+  const bool agrees_u = entity.logical(entity.attribute(6)), agrees_v = entity.logical(entity.attribute(7));
+  if (!entity.status().ok()) return entity.status();
+  if (!agrees_u || !agrees_v) return entity.error("runs against its basis surface", StatusCode::unsupported);
+  if (box) return face(basis, box, depth + 1);
+  const Result<Domain> scale = trim_scales(basis, depth + 1);
+  if (!scale) return scale.status();
+  Domain part{scale->u1 * trims[0], scale->u1 * trims[1], scale->v1 * trims[2], scale->v1 * trims[3]};
+  const StepEntity of(index_, basis);
+  const bool is_round = (is_elementary(of) && !of.is("PLANE")) || of.is("SURFACE_OF_REVOLUTION");
+  if (is_round && part.u1 <= part.u0) part.u1 += turn;  // past the place where angles begin again
+  if (is_torus(of) && part.v1 <= part.v0) part.v1 += turn;
+  if (Status status = check_box(entity, part); !status.ok()) return status;
+  return face(basis, part, depth + 1);
+}
+
+}}  // namespace tessera::abi_0_1
