@@ -116,16 +116,16 @@ TEST(StepPlacement, HasTheDirectionsOfTheFile) {
 
 TEST(StepCurve, ConicsAndLinesFollowTheirFormulas) {
   const StepTextFile file(step_axes + "#30=CIRCLE('',#20,1.5);\n#31=ELLIPSE('',#20,3.,0.5);\n" +
-                          "#32=PARABOLA('',#20,0.75);\n#33=SURFACE_CURVE('',#30,(),.CURVE_3D.);\n");
+                          "#32=PARABOLA('',#20,0.75);\n#33=SURFACE_CURVE('',#30,(),.CURVE_3D.);\n" +
+                          "#34=(BOUNDED_CURVE()CURVE()SURFACE_CURVE(#30,(),.CURVE_3D.));\n");
   const StepGeometry geometry(file.index);
   const Frame f = tilted_frame();
   const auto ellipse = [f](double a, double b) {
     return [=](double t) { return f.at({a * std::cos(t), b * std::sin(t), 0}); };
   };
   for (const Interval& range : {Interval{0, 2 * pi}, Interval{-1, 0.5}, Interval{2, 2 + 1.9 * pi}}) {
-    expect_curve(geometry.curve(30, range), range, ellipse(1.5, 1.5));
     expect_curve(geometry.curve(31, range), range, ellipse(3, 0.5));
-    expect_curve(geometry.curve(33, range), range, ellipse(1.5, 1.5));
+    for (const std::uint64_t round : {30, 33, 34}) expect_curve(geometry.curve(round, range), range, ellipse(1.5, 1.5));
     expect_curve(geometry.curve(24, range), range, [](double t) { return Vec3{3, -1 + 0.6 * t, 2 + 0.8 * t}; });
     expect_curve(
         geometry.curve(32, range), range,

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/text.h"
 #include "io/step/step_geometry.h"
 #include "io/step/step_splines.h"
 
@@ -16,9 +17,9 @@ constexpr double full_turn = 2 * std::numbers::pi;
 /// A range that is usable: finite, not empty.
 Status check_range(const StepEntity& entity, const Interval& range) {
   if (range.from < range.to && std::isfinite(range.to - range.from)) return {};
-  return entity.error("an interval of its parameter must not be empty: from " + std::to_string(range.from) + " to " +
-                          std::to_string(range.to),
-                      StatusCode::invalid_argument);
+  return entity.error(
+      "an interval of its parameter must not be empty: from " + text(range.from) + " to " + text(range.to),
+      StatusCode::invalid_argument);
 }
 
 /// The line backwards, over the negated parameter.
@@ -34,6 +35,12 @@ SplineLine reversed(SplineLine line) {
 
 bool is_wrapper(const StepEntity& entity) {
   return entity.is("SURFACE_CURVE") || entity.is("SEAM_CURVE") || entity.is("INTERSECTION_CURVE");
+}
+
+/// Returns the curve that a trimmed curve or a curve on surfaces is a part of.
+std::uint64_t inner_curve(StepEntity& entity) {
+  const bool is_part = entity.has_parts() && is_wrapper(entity);  // (BOUNDED_CURVE() .. SURFACE_CURVE(#1, ..))
+  return entity.reference(is_part ? entity.attribute(entity.part("SURFACE_CURVE"), 0) : entity.attribute(1));
 }
 
 Status unsupported_curve(const StepEntity& entity) {
@@ -63,7 +70,7 @@ Result<SplineLine> StepGeometry::line(std::uint64_t number, const Range& range, 
   if (entity.is("POLYLINE") || is_step_spline(entity, "CURVE")) return spline(entity, range);
   if (entity.is("TRIMMED_CURVE")) return trimmed(entity, range, depth);
   if (!is_wrapper(entity)) return unsupported_curve(entity);
-  const std::uint64_t inner = entity.reference(entity.attribute(1));
+  const std::uint64_t inner = inner_curve(entity);
   if (!entity.status().ok()) return entity.status();
   return line(inner, range, depth + 1);
 }
@@ -82,10 +89,9 @@ Result<SplineLine> StepGeometry::straight(StepEntity& entity, const Range& range
 
 Result<SplineLine> StepGeometry::conic(StepEntity& entity, const Range& given) const {
   const std::uint64_t position = entity.reference(entity.attribute(1));
-  const double first = units_.length * entity.real(entity.attribute(2));
-  const double second = entity.is("ELLIPSE") ? units_.length * entity.real(entity.attribute(3)) : first;
   const bool is_parabola = entity.is("PARABOLA");
-  if (!(first > 0) || !(second > 0)) entity.fail("its radii or its focal distance must be positive");
+  const double first = units_.length * entity.positive(entity.attribute(2), is_parabola ? "focal distance" : "radius");
+  const double second = entity.is("ELLIPSE") ? units_.length * entity.positive(entity.attribute(3), "radius") : first;
   if (!entity.status().ok()) return entity.status();
   if (is_parabola && !given) return entity.error("needs an interval of its parameter", StatusCode::invalid_argument);
   const Interval range = given.value_or(Interval{0, full_turn});
@@ -113,8 +119,7 @@ Result<SplineLine> StepGeometry::spline(StepEntity& entity, const Range& range) 
   if (entity.is("RATIONAL_B_SPLINE_CURVE")) {
     out.weights = entity.reals(entity.attribute(entity.part("RATIONAL_B_SPLINE_CURVE"), 0));
     if (out.weights.size() != out.points.size())
-      entity.fail("has " + std::to_string(out.weights.size()) + " weights for " + std::to_string(out.points.size()) +
-                  " points");
+      entity.fail("has " + counted(out.weights.size(), "weight") + " for " + counted(out.points.size(), "point"));
   }
   if (!entity.status().ok()) return entity.status();
   const Interval all{out.knots[static_cast<std::size_t>(out.degree)], out.knots[out.points.size()]};
@@ -129,13 +134,13 @@ Result<double> StepGeometry::curve_scale(std::uint64_t number, int depth) const 
   if (!entity.status().ok()) return entity.status();
   if (entity.is("CIRCLE") || entity.is("ELLIPSE")) return units_.angle;
   if (entity.is("PARABOLA")) {
-    const double focal = entity.real(entity.attribute(2));
+    const double focal = entity.positive(entity.attribute(2), "focal distance");
     if (!entity.status().ok()) return entity.status();
     return 2 * focal * units_.length;
   }
   const bool is_line = entity.is("LINE");
   if (!is_line && !is_wrapper(entity) && !entity.is("TRIMMED_CURVE")) return 1.0;
-  const std::uint64_t inner = entity.reference(entity.attribute(is_line ? 2 : 1));
+  const std::uint64_t inner = is_line ? entity.reference(entity.attribute(2)) : inner_curve(entity);
   if (!entity.status().ok()) return entity.status();
   if (!is_line) return curve_scale(inner, depth + 1);
   const Result<Vec3> along = vector(inner);
@@ -158,9 +163,8 @@ Result<double> StepGeometry::inverted(StepEntity& basis, const Vec3& p) const {
   if (!basis.is("CIRCLE") && !basis.is("ELLIPSE"))
     return basis.error("is trimmed by points, which is only possible on lines, circles and ellipses",
                        StatusCode::unsupported);
-  const double first = basis.real(basis.attribute(2));
-  const double second = basis.is("ELLIPSE") ? basis.real(basis.attribute(3)) : first;
-  if (!(first > 0) || !(second > 0)) basis.fail("its radii must be positive");
+  const double first = basis.positive(basis.attribute(2), "radius");
+  const double second = basis.is("ELLIPSE") ? basis.positive(basis.attribute(3), "radius") : first;
   if (!basis.status().ok()) return basis.status();
   const Result<Frame> frame = placement(at);
   if (!frame) return frame.status();

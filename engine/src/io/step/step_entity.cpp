@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/text.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
@@ -75,7 +77,7 @@ std::size_t StepEntity::attribute(std::size_t part, std::size_t k) {
   if (part >= record_.size()) return fail("a part that its kind must have is missing"), StepRecord::npos;
   const std::size_t at = record_.within(part, k);
   if (at != 0) return at;
-  fail("expected at least " + std::to_string(k + 1) + " attributes, found " + std::to_string(record_.count(part)));
+  fail("expected at least " + counted(k + 1, "attribute") + ", found " + std::to_string(record_.count(part)));
   return StepRecord::npos;
 }
 
@@ -97,6 +99,12 @@ double StepEntity::real(std::size_t at) {
   const bool is_number = kind_of(at) == StepKind::real || kind_of(at) == StepKind::integer;
   if (!is_number || !std::isfinite(record_[at].number)) return unexpected(at, "a finite number"), 0;
   return record_[at].number;
+}
+
+double StepEntity::positive(std::size_t at, std::string_view what) {
+  const double value = real(at);
+  if (!(value > 0)) fail("its " + std::string(what) + " is " + text(value) + ", expected a number above 0");
+  return value;
 }
 
 int StepEntity::integer(std::size_t at) {

@@ -25,7 +25,6 @@ class StepEntity {
   void read(std::uint64_t number);
 
   const Status& status() const { return status_; }
-  std::uint64_t number() const { return number_; }
   /// Tells whether the instance is of the kind, or has a part of it.
   bool is(std::string_view kind) const { return status_.ok() && record_.part(kind) != StepRecord::npos; }
   /// Tells whether the instance is "(A()B())".
@@ -47,6 +46,8 @@ class StepEntity {
   std::vector<std::size_t> list(std::size_t at);
 
   double real(std::size_t at);  ///< a finite number, also within a typed value such as LENGTH_MEASURE(1.)
+  /// A number above 0; `what` names it, such as "radius".
+  double positive(std::size_t at, std::string_view what);
   int integer(std::size_t at);
   bool logical(std::size_t at);                           ///< .T. or .F.
   std::string_view enumeration(std::size_t at);           ///< without the dots

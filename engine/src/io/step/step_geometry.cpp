@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/text.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
@@ -22,7 +24,8 @@ Frame frame_about(const Vec3& origin, const Vec3& z, const Vec3& x) {
 Vec3 coordinates(StepEntity& entity, int dimension) {
   const std::vector<double> c = entity.reals(entity.attribute(1));
   if (c.size() != static_cast<std::size_t>(dimension))
-    entity.fail("expected " + std::to_string(dimension) + " coordinates, found " + std::to_string(c.size()));
+    entity.fail("expected " + counted(static_cast<std::size_t>(dimension), "coordinate") + ", found " +
+                std::to_string(c.size()));
   return entity.status().ok() ? Vec3{c[0], c[1], dimension == 3 ? c[2] : 0} : Vec3{};
 }
 
@@ -79,8 +82,7 @@ Result<Vec3> StepGeometry::vector(std::uint64_t number) const {
   StepEntity entity(index_, number);
   require(entity, "VECTOR");
   const std::uint64_t along = entity.reference(entity.attribute(1));
-  const double magnitude = entity.real(entity.attribute(2)) * units_.length;
-  if (!(magnitude > 0)) entity.fail("a vector of length " + std::to_string(magnitude) + ", which must be positive");
+  const double magnitude = entity.positive(entity.attribute(2), "magnitude") * units_.length;
   if (!std::isfinite(magnitude)) entity.fail("its magnitude is too large", StatusCode::non_finite);
   if (!entity.status().ok()) return entity.status();
   const Result<Vec3> unit = direction(along);

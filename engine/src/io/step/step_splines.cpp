@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/text.h"
+
 #include "tessera/bezier_patch.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -28,8 +30,8 @@ std::vector<double> listed_knots(StepEntity& entity, std::size_t multiplicities,
   const std::vector<double> values = entity.reals(knots);
   if (!entity.status().ok()) return out;
   if (copies.size() != values.size())
-    return entity.fail("has " + std::to_string(copies.size()) + " multiplicities for " + std::to_string(values.size()) +
-                       " knots"),
+    return entity.fail("has " + counted(copies.size(), "multiplicity", "multiplicities") + " for " +
+                       counted(values.size(), "knot")),
            out;
   std::size_t sum = 0;
   for (std::size_t k = 0; k < copies.size() && entity.status().ok(); ++k) {
@@ -78,7 +80,7 @@ std::vector<double> step_knots(StepEntity& entity, std::string_view family, int 
   }
   if (entity.is("QUASI_UNIFORM_" + name)) return clamped_knots(degree, count, 1);
   if ((count - 1) % static_cast<std::size_t>(degree) != 0)
-    entity.fail(std::to_string(count) + " points do not make segments of degree " + std::to_string(degree));
+    entity.fail(counted(count, "point") + " cannot make segments of degree " + std::to_string(degree));
   return clamped_knots(degree, count, degree);
 }
 
@@ -89,7 +91,7 @@ bool check_degree(StepEntity& entity, int degree, std::size_t count) {
     entity.fail("degree " + std::to_string(degree) + " is not from 1 to " + std::to_string(max_degree),
                 StatusCode::unsupported_degree);
   else if (count <= static_cast<std::size_t>(degree))
-    entity.fail("degree " + std::to_string(degree) + " needs more than " + std::to_string(count) + " points");
+    entity.fail("degree " + std::to_string(degree) + " needs more than " + counted(count, "point"));
   return entity.status().ok();
 }
 

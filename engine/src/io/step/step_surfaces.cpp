@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/text.h"
 #include "io/step/step_geometry.h"
 #include "io/step/step_splines.h"
 
@@ -58,12 +59,11 @@ void read_weights(StepEntity& entity, Net& net) {
   for (const std::size_t row : entity.list(entity.attribute(entity.part("RATIONAL_B_SPLINE_SURFACE"), 0))) {
     const std::vector<double> weights = entity.reals(row);
     if (weights.size() != net.count_v)
-      entity.fail("a row has " + std::to_string(weights.size()) + " weights, expected " + std::to_string(net.count_v));
+      entity.fail("a row has " + counted(weights.size(), "weight") + ", expected " + std::to_string(net.count_v));
     net.weights.insert(net.weights.end(), weights.begin(), weights.end());
   }
   if (net.weights.size() != net.count_u * net.count_v)
-    entity.fail("has " + std::to_string(net.weights.size()) + " weights for " +
-                std::to_string(net.count_u * net.count_v) + " points");
+    entity.fail("has " + counted(net.weights.size(), "weight") + " for " + counted(net.count_u * net.count_v, "point"));
 }
 
 }  // namespace
@@ -91,16 +91,19 @@ Result<FaceSurface> StepGeometry::face(std::uint64_t number, const std::optional
 Result<FaceSurface> StepGeometry::elementary(StepEntity& entity, const std::optional<Domain>& given) const {
   const bool is_plane = entity.is("PLANE"), is_cone = entity.is("CONICAL_SURFACE"), is_round = is_torus(entity);
   const std::uint64_t position = entity.reference(entity.attribute(1));
-  const double radius = is_plane ? 1 : units_.length * entity.real(entity.attribute(2));
-  const double second = is_cone || is_round ? entity.real(entity.attribute(3)) : 1;
-  const double half_angle = is_cone ? units_.angle * second : 0;
-  if (!(radius > 0) && !(is_cone && radius == 0)) entity.fail("its radius must be positive");
-  if (is_round && !(second > 0)) entity.fail("its radii must be positive");
-  if (is_cone && !(std::abs(half_angle) < turn / 4)) entity.fail("its half angle must be less than a right angle");
+  const double given_radius = is_plane  ? 1
+                              : is_cone ? entity.real(entity.attribute(2))
+                                        : entity.positive(entity.attribute(2), "radius");
+  const double minor = is_round ? units_.length * entity.positive(entity.attribute(3), "minor radius") : 0;
+  const double half_angle = is_cone ? units_.angle * entity.real(entity.attribute(3)) : 0;
+  const double radius = units_.length * given_radius;
+  if (given_radius < 0) entity.fail("its radius is " + text(given_radius) + ", expected 0 or more");
+  if (is_cone && !(std::abs(half_angle) < turn / 4))
+    entity.fail("its half angle is " + text(half_angle) + " radians, expected less than a right angle");
   if (!entity.status().ok()) return entity.status();
   const bool is_closed = is_round || entity.is("SPHERICAL_SURFACE");
   if (!given && !is_closed) return needs_box(entity);
-  const Domain box = given ? *given : closed_box(entity, radius, second * units_.length);
+  const Domain box = given ? *given : closed_box(entity, radius, minor);
   if (!entity.status().ok()) return entity.status();
   if (Status status = is_plane ? Status() : check_angles(entity, range_u(box)); !status.ok()) return status;
   if (Status status = is_closed ? check_angles(entity, range_v(box)) : Status(); !status.ok()) return status;
@@ -108,7 +111,7 @@ Result<FaceSurface> StepGeometry::elementary(StepEntity& entity, const std::opti
   if (!frame) return frame.status();
   if (is_plane) return plane_surface(*frame, box);
   if (is_cone) return cone_surface(*frame, radius, half_angle, box);
-  if (is_round) return torus_surface(*frame, radius, second * units_.length, box);
+  if (is_round) return torus_surface(*frame, radius, minor, box);
   return is_closed ? torus_surface(*frame, 0, radius, box) : cylinder_surface(*frame, radius, box);
 }
 
@@ -144,8 +147,8 @@ Result<FaceSurface> StepGeometry::spline_face(StepEntity& entity, const std::opt
     if (!some) return some.status();
     if (net.count_u++ == 0) net.count_v = some->size();
     if (some->size() != net.count_v)
-      return entity.error("row " + std::to_string(net.count_u) + " has " + std::to_string(some->size()) +
-                          " points, row 1 has " + std::to_string(net.count_v));
+      return entity.error("row " + std::to_string(net.count_u) + " has " + counted(some->size(), "point") +
+                          ", row 1 has " + std::to_string(net.count_v));
     poles.insert(poles.end(), some->begin(), some->end());
   }
   if (!check_degree(entity, net.degree_u, net.count_u) || !check_degree(entity, net.degree_v, net.count_v))
