@@ -59,9 +59,10 @@ Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain
     }
   const Interval part_u = covered(u.knots, u.degree, range_u(box)), part_v = covered(v.knots, v.degree, range_v(box));
   const Domain domain{part_u.from, part_u.to, part_v.from, part_v.to};
-  return made(rational ? BSplineSurface::rational(u.degree, u.knots, v.degree, v.knots, points, weights, domain)
-                       : BSplineSurface::polynomial(u.degree, u.knots, v.degree, v.knots, points, domain),
-              {});
+  return with_parameters(rational
+                             ? BSplineSurface::rational(u.degree, u.knots, v.degree, v.knots, points, weights, domain)
+                             : BSplineSurface::polynomial(u.degree, u.knots, v.degree, v.knots, points, domain),
+                         {});
 }
 
 Result<FaceSurface> from_bezier(const Geom_BezierSurface& surface, const Domain& box) {
@@ -79,9 +80,9 @@ Result<FaceSurface> from_bezier(const Geom_BezierSurface& surface, const Domain&
       weights.push_back(rational ? surface.Weight(i, j) : 1);
     }
   const Domain domain{std::max(0.0, box.u0), std::min(1.0, box.u1), std::max(0.0, box.v0), std::min(1.0, box.v1)};
-  return made(BSplineSurface::rational(surface.UDegree(), knots(surface.UDegree()), surface.VDegree(),
-                                       knots(surface.VDegree()), points, weights, domain),
-              {});
+  return with_parameters(BSplineSurface::rational(surface.UDegree(), knots(surface.UDegree()), surface.VDegree(),
+                                                  knots(surface.VDegree()), points, weights, domain),
+                         {});
 }
 
 /// The largest distance of the two surfaces at equal parameters, on a fine grid.

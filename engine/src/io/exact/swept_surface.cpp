@@ -7,7 +7,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-Result<FaceSurface> made(Result<BSplineSurface> surface, const Reparametrization& parameters, double fit_error) {
+Result<FaceSurface> with_parameters(Result<BSplineSurface> surface, const Reparametrization& parameters,
+                                    double fit_error) {
   if (!surface) return surface.status();
   return FaceSurface{*std::move(surface), parameters, fit_error};
 }
@@ -23,8 +24,9 @@ Result<FaceSurface> revolved(const Frame& frame, const Interval& angles, const S
       weights.push_back(arc.weight * profile.weight(k));
     }
   const Domain domain{angles.from, angles.to, profile.range.from, profile.range.to};
-  return made(BSplineSurface::rational(2, turn.knots(), profile.degree, profile.knots, points, weights, domain),
-              {turn, profile.arcs}, profile.fit_error);
+  return with_parameters(
+      BSplineSurface::rational(2, turn.knots(), profile.degree, profile.knots, points, weights, domain),
+      {turn, profile.arcs}, profile.fit_error);
 }
 
 Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, const Interval& range) {
@@ -37,8 +39,8 @@ Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, c
     }
   const std::vector<double> knots_v{range.from, range.from, range.to, range.to};
   const Domain domain{profile.range.from, profile.range.to, range.from, range.to};
-  return made(BSplineSurface::rational(profile.degree, profile.knots, 1, knots_v, points, weights, domain),
-              {profile.arcs, {}}, profile.fit_error);
+  return with_parameters(BSplineSurface::rational(profile.degree, profile.knots, 1, knots_v, points, weights, domain),
+                         {profile.arcs, {}}, profile.fit_error);
 }
 
 Result<FaceSurface> plane_surface(const Frame& frame, const Domain& box) {

@@ -43,7 +43,8 @@ inline Interval range_u(const Domain& box) { return {box.u0, box.u1}; }
 inline Interval range_v(const Domain& box) { return {box.v0, box.v1}; }
 
 /// Adds the parameters to a surface. Errors: the surface's own.
-Result<FaceSurface> made(Result<BSplineSurface> surface, const Reparametrization& parameters, double fit_error = 0);
+Result<FaceSurface> with_parameters(Result<BSplineSurface> surface, const Reparametrization& parameters,
+                                    double fit_error = 0);
 
 /// Revolves `profile`, which runs along v with points in the frame's coordinates, about the frame's z by the angles u.
 /// Errors of this and the following: those of BSplineSurface. Angles span at most 2 pi.

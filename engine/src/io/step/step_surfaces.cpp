@@ -170,7 +170,7 @@ Result<FaceSurface> StepGeometry::spline_face(StepEntity& entity, const std::opt
           : BSplineSurface::rational(net.degree_u, net.knots_u, net.degree_v, net.knots_v, std::move(poles),
                                      std::move(net.weights), part);
   if (!spline) return entity.named(spline.status());
-  return made(std::move(spline), {});
+  return with_parameters(std::move(spline), {});
 }
 
 /// Returns the factors from the file's parameters to ours, (u1, v1) of a rectangle from 0.
