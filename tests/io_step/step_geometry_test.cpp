@@ -169,7 +169,9 @@ TEST(StepCurve, TrimsAreParametersOrPoints) {
       "#32=TRIMMED_CURVE('',#30,(PARAMETER_VALUE(90.)),(PARAMETER_VALUE(30.)),.F.,.PARAMETER.);\n"
       "#33=TRIMMED_CURVE('',#24,(#4),(PARAMETER_VALUE(7.),#5),.T.,.CARTESIAN.);\n"
       "#34=TRIMMED_CURVE('',#24,(PARAMETER_VALUE(-1.),#5),(PARAMETER_VALUE(2.),#4),.T.,.PARAMETER.);\n"
-      "#35=TRIMMED_CURVE('',#31,(PARAMETER_VALUE(100.)),(PARAMETER_VALUE(120.)),.T.,.PARAMETER.);\n");
+      "#35=TRIMMED_CURVE('',#31,(PARAMETER_VALUE(100.)),(PARAMETER_VALUE(120.)),.T.,.PARAMETER.);\n"
+      "#36=PARABOLA('',#20,0.75);\n"
+      "#37=TRIMMED_CURVE('',#36,(PARAMETER_VALUE(-1.)),(PARAMETER_VALUE(2.)),.T.,.PARAMETER.);\n");
   const StepGeometry geometry(file.index, {1, pi / 180});
   const Frame f = tilted_frame();
   const auto circle = [f](double t) { return f.at({1.5 * std::cos(t), 1.5 * std::sin(t), 0}); };
@@ -180,6 +182,7 @@ TEST(StepCurve, TrimsAreParametersOrPoints) {
   expect_curve(geometry.curve(33), {-1, 5}, line);
   expect_curve(geometry.curve(34), {-2.5, 5}, line);  // 2.5 is the length of the line's vector
   expect_curve(geometry.curve(35), {100 * pi / 180, 120 * pi / 180}, circle);
+  expect_curve(geometry.curve(37), {-1.5, 3}, [&](double t) { return f.at({t * t / 3, t, 0}); });  // t = 2 focal u
 }
 
 TEST(StepSurface, QuadricsAndToriFollowTheirFormulas) {
