@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "io/step/step_index.h"
 #include "io/step/step_record.h"
@@ -82,6 +83,20 @@ TEST(StepIndex, RemarksNameLines) {
   const StepIndex index = value_of(StepIndex::make(many));
   EXPECT_EQ(index.remarks().size(), StepIndex::max_remarks);
   EXPECT_EQ(index.remark_count(), 49u);
+}
+
+TEST(StepIndex, CountsLinesOfLongTexts) {
+  std::string text = "DATA;\n";
+  std::vector<std::size_t> begins{0, text.size()};
+  Random random(6);
+  while (text.size() < 300000) {
+    text += std::string(random() % 900, ' ') + '\n';
+    begins.push_back(text.size());
+  }
+  const StepIndex index = value_of(StepIndex::make(text));
+  for (std::size_t k = 0; k < begins.size(); ++k) ASSERT_EQ(index.line(begins[k]), k + 1);
+  EXPECT_EQ(index.line(text.size()), begins.size());
+  EXPECT_EQ(value_of(StepIndex::make("DATA;")).line(0), 1u);
 }
 
 TEST(StepIndex, WithoutData) {

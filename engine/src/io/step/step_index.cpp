@@ -11,12 +11,25 @@
 #include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// Counts line ends, by searches, which look at many characters at once.
+std::size_t line_ends(std::string_view text) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string_view::npos; ++at) ++count;
+  return count;
+}
+
+}  // namespace
 
 /// Reads the sections of a file. Long runs of instances are scanned in pieces by several threads, each from where an
 /// instance seems to begin. A piece counts if the one before ends just there; otherwise its text is scanned again.
 class StepIndexMaker {
  public:
-  StepIndexMaker(std::string_view text, StepIndex& index) : text_(text), index_(index) { index_.text_ = text; }
+  StepIndexMaker(std::string_view text, StepIndex& index) : text_(text), index_(index) {
+    index_.text_ = text;
+    index_.count_lines();
+  }
 
   Status make(const Execution& execution) {
     if (Status status = scan_pieces(execution); !status.ok()) return status;
@@ -150,7 +163,17 @@ std::span<const std::uint32_t> StepIndex::of_kind(std::string_view kind) const {
 }
 
 std::size_t StepIndex::line(std::uint64_t place) const {
-  return 1 + static_cast<std::size_t>(std::ranges::count(text_.substr(0, place), '\n'));
+  const std::size_t block = std::min<std::size_t>(place, text_.size()) / line_block;
+  const std::size_t begin = block * line_block;
+  return 1 + lines_before_[block] + line_ends(text_.substr(begin, place - begin));
+}
+
+void StepIndex::count_lines() {
+  std::size_t lines = 0;
+  for (std::size_t at = 0; at <= text_.size(); at += line_block) {
+    lines_before_.push_back(lines);
+    lines += line_ends(text_.substr(at, line_block));
+  }
 }
 
 /// Sorts by numbers, and leaves out all but the first of each.

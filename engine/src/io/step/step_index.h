@@ -59,6 +59,7 @@ class StepIndex {
 
  private:
   friend class StepIndexMaker;
+  void count_lines();
   void sort_instances();
   void list_kinds();
   void remark(std::uint64_t place, std::string text);
@@ -67,6 +68,8 @@ class StepIndex {
   std::vector<StepInstance> instances_;
   std::vector<std::string_view> kinds_;
   std::vector<std::uint32_t> by_kind_, first_of_kind_;  ///< places, and where those of each kind begin
+  static constexpr std::size_t line_block = std::size_t{1} << 16;
+  std::vector<std::size_t> lines_before_;  ///< line ends before each block of so many bytes
   std::vector<StepRemark> remarks_;
   std::size_t remark_count_ = 0;
 };
