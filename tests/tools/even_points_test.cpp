@@ -27,7 +27,7 @@ TEST(EvenPoints, EqualAreasGetEquallyMany) {
   EXPECT_EQ(found, (std::vector<std::size_t>{400, 400, 200}));
 }
 
-/// Of a square of 32 x 32 cells with four points each, none is empty; random points leave 19 of them empty.
+/// A square of 32 x 32 cells gets four points a cell: none is empty, while random points leave 19 of them empty.
 TEST(EvenPoints, FillTheirTriangles) {
   const Mesh mesh = square_and_triangle(0);
   const Result<EvenPoints> even = EvenPoints::make(mesh);

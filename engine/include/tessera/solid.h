@@ -25,8 +25,8 @@ enum class PointSide : std::uint8_t {
 
 /// On which side a point lies, and how sure that is.
 struct Containment {
-  /// Of a closed surface, by the number of times that a ray leaves the body. Of an open one, `inside` if the winding
-  /// number is above 0.5 in absolute value.
+  /// A closed surface tells it by the number of times that a ray leaves the body; with an open one, a point is `inside`
+  /// if its winding number is above 0.5 in absolute value.
   PointSide side = PointSide::unknown;
   /// The surface is closed, and the ray meets it in certified hits alone, away from edges: the side is right unless the
   /// point lies on the surface up to rounding. Otherwise it is that of most rays, or of the winding number.

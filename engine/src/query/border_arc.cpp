@@ -177,7 +177,7 @@ struct PartPlace {
 bool add_part(const Points& points, const PartPlace& at, const HalfLine& line, double square, bool is_last,
               AngleShare& share) {
   const auto [from_line, from_origin] = squares_from_chord(at.from, at.to, line.direction);
-  // What lies between the part and its chord does not meet the half-line, and covers no more than this.
+  // The surface between the part and its chord does not meet the half-line, and covers no more than this.
   constexpr double small = 1e-9;
   const bool is_straight = 16 * at.bend * at.bend <= from_line && 4 * at.bend * at.reach <= small * from_origin;
   if (!is_straight && at.is_beyond(4, line, square)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which way the normals of closed surfaces point, by the parity of hits.
+// The side to which normals of closed surfaces point, by the parity of hits.
 
 #include <array>
 #include <cstdint>

@@ -18,7 +18,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// What the numbers of a file's geometry mean.
+/// The units and the dimension of a file's geometry.
 struct StepUnits {
   double length = 1;  ///< the model's units in one of the file's; > 0
   double angle = 1;   ///< radians in one of the file's; > 0

@@ -24,7 +24,7 @@ struct StepInstance {
   std::uint32_t kind;    ///< index into StepIndex::kinds(), or several_kinds
 };
 
-/// What is wrong with a file, but leaves the other instances usable.
+/// A fault of a file that leaves the other instances usable.
 struct StepRemark {
   std::size_t line;  ///< from 1
   std::string text;
