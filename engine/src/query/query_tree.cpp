@@ -144,8 +144,7 @@ std::uint32_t QueryTree::nearest_item(Path& path) const {
   if (!(path.far_ <= max_float_distance) || way.block == no_id) return no_id;
   const Block& block = blocks_[way.block & ~block_bit];
   way.in_block.start(way.squares_of, block, block.item, infinity);
-  std::size_t lane = 0;
-  return way.in_block.take(infinity, lane) ? block.item[lane] : no_id;
+  return way.in_block.left != 0 ? block.item[way.in_block.nearest()] : no_id;
 }
 
 std::size_t QueryTree::memory_bytes() const {

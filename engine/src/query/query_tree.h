@@ -52,7 +52,7 @@ class QueryTree {
   class Path;
   /// Begins a search at the block whose boxes are the nearest to a point, which it fetches into the caches.
   void begin(const kernel::NearestKernels& kernels, const Vec3& point, Path& path) const;
-  /// Returns the item of the block at which a search is whose box is the nearest to the point, or no_id.
+  /// Returns the item of the block at which a search begins whose box is the nearest to the point, or no_id.
   std::uint32_t nearest_item(Path& path) const;
   /// Calls visit(item, distance) for items whose boxes are within visitor.reach() of the point of a path that has
   /// begun, the nearer ones first. The distance is a lower bound; reach() may shrink meanwhile. Ends early if visit
@@ -156,20 +156,25 @@ struct QueryTree::DoubleSquares {
 template <class Squares>
 struct QueryTree::Level {
   typename Squares::Real squares[width];
-  const std::uint32_t* content;  ///< children of a node, or items of a block
-  unsigned left;
+  const std::uint32_t* content = nullptr;  ///< children of a node, or items of a block
+  unsigned left = 0;
 
   template <class Boxes>
   void start(const Squares& squares_of, const Boxes& boxes, const std::uint32_t (&of)[width], double limit) {
     content = of;
     left = squares_of(boxes, limit, squares);
   }
+  /// Returns the place of the nearest of what is left, which must not be nothing.
+  std::size_t nearest() const {
+    auto lane = static_cast<std::size_t>(std::countr_zero(left));
+    for (unsigned rest = left & (left - 1); rest != 0; rest &= rest - 1)
+      if (const auto k = static_cast<std::size_t>(std::countr_zero(rest)); squares[k] < squares[lane]) lane = k;
+    return lane;
+  }
   /// Takes the nearest of what is left within a limit. Returns false if there is none, and then nothing is left.
   bool take(double limit, std::size_t& lane) {
     if (left == 0) return false;
-    lane = static_cast<std::size_t>(std::countr_zero(left));
-    for (unsigned rest = left & (left - 1); rest != 0; rest &= rest - 1)
-      if (const auto k = static_cast<std::size_t>(std::countr_zero(rest)); squares[k] < squares[lane]) lane = k;
+    lane = nearest();
     const bool is_near = squares[lane] <= limit;
     left = is_near ? left & ~(1u << lane) : 0;
     return is_near;
@@ -181,15 +186,11 @@ struct QueryTree::Way {
   Squares squares_of;
   std::size_t depth = 0;
   std::uint32_t block = no_id;  ///< where the way is
-  Level<Squares> in_block, levels[max_depth];
+  Level<Squares> in_block;      ///< of the block, once it has begun
+  Level<Squares> levels[max_depth];
 };
 
 class QueryTree::Path {
- public:
-  /// The point of the search.
-  const Vec3& point() const { return point_; }
-
- private:
   friend class QueryTree;
   Vec3 point_;
   double far_ = 0;  ///< the distance of the point from the middle of the scene, at most
@@ -198,7 +199,7 @@ class QueryTree::Path {
 
 template <class Squares>
 void QueryTree::start(Way<Squares>& way) const {
-  way.depth = 0, way.block = no_id, way.levels[0].left = 0;
+  way.depth = 0, way.block = no_id, way.levels[0].left = 0, way.in_block.content = nullptr;
   if (root_ == no_id) return;
   if ((root_ & block_bit) != 0)
     way.block = root_;
@@ -233,7 +234,7 @@ void QueryTree::visit_by(Way<Squares>& way, double margin, Visitor& visitor) con
   while (way.block != no_id || next_block(way, limit())) {
     const Block& block = blocks_[way.block & ~block_bit];
     Level<Squares>& in = way.in_block;
-    in.start(way.squares_of, block, block.item, limit());
+    if (in.content != block.item) in.start(way.squares_of, block, block.item, limit());
     for (std::size_t lane = 0; in.take(limit(), lane);)
       if (!visitor.visit(block.item[lane], std::max(std::sqrt(double(in.squares[lane])) - margin, 0.0))) return;
     way.block = no_id;
