@@ -4,6 +4,7 @@
 #include <opencascade/TopoDS_Face.hxx>
 #include <vector>
 
+#include "io/exact/face_box.h"
 #include "io_occt/face_surface.h"
 #include "io_occt/shape_edges.h"
 #include "tessera/geometry.h"
@@ -12,12 +13,6 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// The part of OpenCASCADE's parameters that a face uses, and its tolerance in them.
-struct FaceBox {
-  Domain domain;
-  double tolerance_u = 0, tolerance_v = 0;
-  bool ends_u = false, ends_v = false;  ///< a side across u, or v, of the box is one of the surface
-};
 /// The box of a face. Moves its ends to knots and ends of the surface that are within the tolerance. Errors:
 /// unsupported (unbounded, or no extent). May throw Standard_Failure.
 Result<FaceBox> face_box(const TopoDS_Face& face);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/exact/coedge_parameter.h"
 #include "io_occt/spline_line.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -25,82 +26,6 @@ bool is_range(const Interval& range) { return range.from < range.to && std::isfi
 Result<Curve> curve_of(const SplineLine& line) {
   return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, line.range)
                               : Curve::nurbs(line.degree, line.points, line.weights, line.knots, line.range);
-}
-
-/// A monotone function on an interval.
-struct Function {
-  Interval range;
-  std::function<double(double)> at;
-  std::vector<double> breaks;  ///< where it is not smooth, within the range and in order
-};
-
-/// Fractions of linear functions, as a rational spline of degree 1.
-class Fractions {
- public:
-  explicit Fractions(const Function& f) : f_(f) {}
-
-  /// Empty if the function is not monotone.
-  std::optional<Curve> curve() {
-    add_point(f_.range.from);
-    for (const double end : f_.breaks) append(knots_.back(), end, 0);
-    append(knots_.back(), f_.range.to, 0);
-    if (!monotone_) return {};
-    std::vector<double> knots{knots_.front()};
-    knots.insert(knots.end(), knots_.begin(), knots_.end());
-    knots.push_back(knots_.back());
-    const Result<Curve> made = Curve::nurbs(1, points_, weights_, knots);
-    return made ? std::optional<Curve>(*made) : std::nullopt;
-  }
-
- private:
-  void add_point(double s, double ratio = 1) {
-    points_.push_back({f_.at(s), 0, 0});
-    weights_.push_back(weights_.empty() ? 1 : ratio * weights_.back());
-    knots_.push_back(s);
-  }
-
-  /// Appends one fraction, which interpolates both ends and the middle; halves the interval until points between fit.
-  void append(double from, double to, int depth) {
-    if (!(from < to)) return;
-    const double a = f_.at(from), b = f_.at(to), middle = f_.at(0.5 * (from + to));
-    const double ratio = (middle - a) / (b - middle);
-    if (!(ratio > 1e-6 && ratio < 1e6)) {
-      monotone_ = false;
-      return;
-    }
-    bool fits = true;
-    for (const double x : {0.25, 0.75}) {
-      const double fraction = ((1 - x) * a + x * ratio * b) / (1 - x + x * ratio);
-      fits = fits && std::abs(fraction - f_.at((1 - x) * from + x * to)) <= 1e-10 * std::abs(b - a);
-    }
-    constexpr int deepest = 6;
-    if (fits || depth == deepest) return add_point(to, ratio);
-    append(from, 0.5 * (from + to), depth + 1);
-    append(0.5 * (from + to), to, depth + 1);
-  }
-
-  const Function& f_;
-  std::vector<Vec3> points_;
-  std::vector<double> weights_, knots_;
-  bool monotone_ = true;
-};
-
-/// Whether f runs evenly from one end of `domain` to the other, up to rounding.
-bool is_even(const Function& f, const Interval& domain, bool reversed) {
-  const double width = f.range.to - f.range.from;
-  if (std::abs(domain.from - f.range.from) + std::abs(domain.to - f.range.to) > 1e-12 * width) return false;
-  const auto fits = [&](double s) {
-    const double even = reversed ? domain.from + domain.to - s : s;
-    return std::abs(f.at(s) - even) <= 1e-12 * (width + std::abs(s));
-  };
-  double before = f.range.from;
-  for (std::size_t k = 0; k <= f.breaks.size(); ++k) {
-    const double end = k < f.breaks.size() ? f.breaks[k] : f.range.to;
-    for (const double x : {0.0, 0.25, 0.5, 1.0})
-      if (!fits((1 - x) * before + x * end)) return false;
-    before = end;
-  }
-  return true;
 }
 
 }  // namespace
@@ -162,23 +87,14 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
     const double t = parameter.arcs ? parameter.arcs->angle(s) : s;
     return whole == theirs ? t : theirs.from + stretch * (t - whole.from);
   };
-  Function f{range, [&](double s) { return trim.parameter(their(s)); }, {}};
+  MonotoneFunction f{range, [&](double s) { return trim.parameter(their(s)); }, {}};
   if (parameter.arcs) f.breaks = parameter.arcs->knots();
   for (const double b : trim.breaks) {
     const double t = whole == theirs ? b : whole.from + (b - theirs.from) / stretch;
     f.breaks.push_back(parameter.arcs ? parameter.arcs->parameter(t) : t);
   }
-  const double tiny = 1e-9 * (range.to - range.from);
-  std::sort(f.breaks.begin(), f.breaks.end());
-  double before = range.from;
-  std::erase_if(f.breaks, [&](double s) {
-    const bool near = s - before < tiny || range.to - s < tiny;
-    if (!near) before = s;
-    return near;
-  });
-  if (is_even(f, trim.curve.domain(), out.reversed)) return out;
-  out.parameter = Fractions(f).curve();
-  if (!out.parameter) out.edge = no_id;
+  settle_breaks(f);
+  state_parameter(f, trim.curve.domain(), out);
   return out;
 }
 

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "base/text.h"
+#include "io/exact/transposed.h"
+#include "io/exact/usable_edges.h"
 #include "io_occt/face_loops.h"
 #include "io_occt/face_surface.h"
 #include "io_occt/part_tree.h"
@@ -37,40 +39,6 @@ struct Shortcomings {
 };
 
 using opencascade::handle;
-
-/// Swaps u and v, which turns the normal around.
-Result<BSplineSurface> transposed(const BSplineSurface& s) {
-  std::vector<Vec3> points;
-  std::vector<double> weights;
-  for (std::size_t j = 0; j < s.count_v(); ++j)
-    for (std::size_t i = 0; i < s.count_u(); ++i) {
-      points.push_back(s.point(i, j));
-      weights.push_back(s.weight(i, j));
-    }
-  const Domain& d = s.domain();
-  return BSplineSurface::rational(s.degree_v(), s.knots_v(), s.degree_u(), s.knots_u(), points, weights,
-                                  Domain{d.v0, d.v1, d.u0, d.u1});
-}
-
-Result<Curve> transposed(const Curve& curve) {
-  std::vector<Vec3> points(curve.points().begin(), curve.points().end());
-  for (Vec3& p : points) std::swap(p.x, p.y);
-  return curve.is_rational() ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots(), curve.domain())
-                             : Curve::b_spline(curve.degree(), points, curve.knots(), curve.domain());
-}
-
-Status transpose(BSplineSurface& surface, std::vector<TrimLoop>& loops) {
-  Result<BSplineSurface> swapped = transposed(surface);
-  if (!swapped) return swapped.status();
-  surface = *std::move(swapped);
-  for (TrimLoop& loop : loops)
-    for (Curve& curve : loop.curves) {
-      Result<Curve> turned = transposed(curve);
-      if (!turned) return turned.status();
-      curve = *std::move(turned);
-    }
-  return {};
-}
 
 /// Name, colour, shell and solid of the wholes that hold a face.
 struct Wholes {
@@ -108,7 +76,8 @@ class PartShape {
   Shape finish(const std::string* above) && {
     std::move(edges_).give_to(shape_);
     if (above) shape_.name = *above;
-    drop_unusable_edges();
+    for (const UnusableEdges& one : drop_unusable_edges(shape_))
+      shortcomings_.whole.push_back(words_[one.face] + " is read without shared edges: " + one.reason);
     return std::move(shape_);
   }
 
@@ -191,27 +160,6 @@ class PartShape {
                                   text(stated.u0) + " to " + text(stated.u1) + ", v from " + text(stated.v0) + " to " +
                                   text(stated.v1));
     return false;
-  }
-
-  /// Takes its edges from each face whose loops do not fit them: one edge must not cost the model.
-  void drop_unusable_edges() {
-    if (check_topology(shape_).ok()) return;
-    Shape alone;
-    alone.vertices = shape_.vertices;
-    alone.edges = shape_.edges;
-    for (std::size_t k = 0; k < shape_.faces.size(); ++k) {
-      ShapeFace& face = shape_.faces[k];
-      alone.faces.assign(1, face);
-      const Status status = check_topology(alone);
-      if (status.ok()) continue;
-      for (Shared<std::vector<TrimLoop>>* const shared : {&face.trims, &face.outline}) {
-        std::vector<TrimLoop> loops = **shared;
-        for (TrimLoop& loop : loops) loop.coedges.clear();
-        *shared = std::move(loops);
-      }
-      const std::size_t loop = std::min(status.message().find("loop "), status.message().size());
-      shortcomings_.whole.push_back(words_[k] + " is read without shared edges: " + status.message().substr(loop));
-    }
   }
 
   const CadFile& file_;

@@ -1,6 +1,7 @@
 #include "io/exact/spline_line.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -23,6 +24,26 @@ SplineLine parabola_arc(const Vec3& vertex, const Vec3& x, const Vec3& y, double
   const auto blossom = [&](double s, double t) { return vertex + s * t / (4 * focal) * x + 0.5 * (s + t) * y; };
   const double a = range.from, b = range.to;
   return {2, {a, a, a, b, b, b}, {blossom(a, a), blossom(a, b), blossom(b, b)}, {}, range, {}, 0};
+}
+
+/// The tangents at a - h and a + h meet at centre + (cosh(a) x + sinh(a) y) / cosh(h), with the weight cosh(h).
+SplineLine hyperbola_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range) {
+  const int count = std::max(1, static_cast<int>(std::ceil((range.to - range.from) / 1.5)));
+  const double half = (range.to - range.from) / (2 * count);
+  const auto at = [&](double t, double scale) {
+    return centre + (std::cosh(t) / scale * x + std::sinh(t) / scale * y);
+  };
+  SplineLine line{2, {range.from, range.from, range.from}, {at(range.from, 1)}, {1}, range, {}, 0};
+  for (int k = 0; k < count; ++k) {
+    const double end = k + 1 == count ? range.to : range.from + 2 * half * (k + 1);
+    line.points.push_back(at(range.from + half * (2 * k + 1), std::cosh(half)));
+    line.points.push_back(at(end, 1));
+    line.weights.push_back(std::cosh(half));
+    line.weights.push_back(1);
+    line.knots.insert(line.knots.end(), 2, end);
+  }
+  line.knots.push_back(range.to);
+  return line;
 }
 
 Interval covered(std::span<const double> knots, int degree, const Interval& range) {

@@ -30,6 +30,8 @@ SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& ran
 SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
 /// The parabola vertex + t^2/(4 focal) x + t y.
 SplineLine parabola_arc(const Vec3& vertex, const Vec3& x, const Vec3& y, double focal, const Interval& range);
+/// The hyperbola centre + cosh(t) x + sinh(t) y, whose parameter is t at the ends of each arc, but not within.
+SplineLine hyperbola_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
 
 /// Returns the part of a range that the knots of a spline cover. An end that equals a knot up to the rounding of a
 /// period becomes that knot: otherwise a patch would lie between them.

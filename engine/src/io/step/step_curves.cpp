@@ -1,4 +1,4 @@
-// Curves of StepGeometry.
+// Curves of a STEP file, by kind.
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "io/step/step_geometry.h"
+#include "io/step/step_curves.h"
 #include "io/step/step_splines.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -33,23 +33,22 @@ SplineLine reversed(SplineLine line) {
   return line;
 }
 
-bool is_wrapper(const StepEntity& entity) {
-  return entity.is("SURFACE_CURVE") || entity.is("SEAM_CURVE") || entity.is("INTERSECTION_CURVE");
-}
-
-/// Returns the curve that a trimmed curve or a curve on surfaces is a part of.
-std::uint64_t inner_curve(StepEntity& entity) {
-  const bool is_part = entity.has_parts() && is_wrapper(entity);  // (BOUNDED_CURVE() .. SURFACE_CURVE(#1, ..))
-  return entity.reference(is_part ? entity.attribute(entity.part("SURFACE_CURVE"), 0) : entity.attribute(1));
-}
-
 Status unsupported_curve(const StepEntity& entity) {
   return entity.error("is no curve that can be converted", StatusCode::unsupported);
 }
 
 }  // namespace
 
-Result<StepCurve> StepGeometry::curve(std::uint64_t number, const std::optional<Interval>& range) const {
+bool is_step_wrapper(const StepEntity& entity) {
+  return entity.is("SURFACE_CURVE") || entity.is("SEAM_CURVE") || entity.is("INTERSECTION_CURVE");
+}
+
+std::uint64_t inner_step_curve(StepEntity& entity) {
+  const bool is_part = entity.has_parts() && is_step_wrapper(entity);  // (BOUNDED_CURVE() .. SURFACE_CURVE(#1, ..))
+  return entity.reference(is_part ? entity.attribute(entity.part("SURFACE_CURVE"), 0) : entity.attribute(1));
+}
+
+Result<StepCurve> StepCurves::curve(std::uint64_t number, const std::optional<Interval>& range) const {
   const Result<SplineLine> made = line(number, range, 0);
   if (!made) return made.status();
   Result<Curve> curve = made->weights.empty()
@@ -59,23 +58,24 @@ Result<StepCurve> StepGeometry::curve(std::uint64_t number, const std::optional<
   return StepCurve{*std::move(curve), made->arcs};
 }
 
-Result<SplineLine> StepGeometry::line(std::uint64_t number, const Range& range, int depth) const {
+Result<SplineLine> StepCurves::line(std::uint64_t number, const Range& range, int depth) const {
   StepEntity entity(index_, number);
   if (depth > max_depth) entity.fail("is made of too many curves, or of itself");
   if (!entity.status().ok()) return entity.status();
   if (range)
     if (Status status = check_range(entity, *range); !status.ok()) return status;
   if (entity.is("LINE")) return straight(entity, range);
-  if (entity.is("CIRCLE") || entity.is("ELLIPSE") || entity.is("PARABOLA")) return conic(entity, range);
+  if (entity.is("CIRCLE") || entity.is("ELLIPSE") || entity.is("PARABOLA") || entity.is("HYPERBOLA"))
+    return conic(entity, range);
   if (entity.is("POLYLINE") || is_step_spline(entity, "CURVE")) return spline(entity, range);
   if (entity.is("TRIMMED_CURVE")) return trimmed(entity, range, depth);
-  if (!is_wrapper(entity)) return unsupported_curve(entity);
-  const std::uint64_t inner = inner_curve(entity);
+  if (!is_step_wrapper(entity)) return unsupported_curve(entity);
+  const std::uint64_t inner = inner_step_curve(entity);
   if (!entity.status().ok()) return entity.status();
   return line(inner, range, depth + 1);
 }
 
-Result<SplineLine> StepGeometry::straight(StepEntity& entity, const Range& range) const {
+Result<SplineLine> StepCurves::straight(StepEntity& entity, const Range& range) const {
   const std::uint64_t at = entity.reference(entity.attribute(1)), along = entity.reference(entity.attribute(2));
   if (!entity.status().ok()) return entity.status();
   if (!range) return entity.error("needs an interval of its parameter", StatusCode::invalid_argument);
@@ -87,24 +87,30 @@ Result<SplineLine> StepGeometry::straight(StepEntity& entity, const Range& range
   return straight_line(*start + range->from * unit, *start + range->to * unit, *range);
 }
 
-Result<SplineLine> StepGeometry::conic(StepEntity& entity, const Range& given) const {
+Result<SplineLine> StepCurves::conic(StepEntity& entity, const Range& given) const {
   const std::uint64_t position = entity.reference(entity.attribute(1));
-  const bool is_parabola = entity.is("PARABOLA");
+  const bool is_parabola = entity.is("PARABOLA"), is_hyperbola = entity.is("HYPERBOLA"),
+             is_open = is_parabola || is_hyperbola;
+  const bool has_second = is_hyperbola || entity.is("ELLIPSE");
   const double first = units_.length * entity.positive(entity.attribute(2), is_parabola ? "focal distance" : "radius");
-  const double second = entity.is("ELLIPSE") ? units_.length * entity.positive(entity.attribute(3), "radius") : first;
+  const double second = has_second ? units_.length * entity.positive(entity.attribute(3), "radius") : first;
   if (!entity.status().ok()) return entity.status();
-  if (is_parabola && !given) return entity.error("needs an interval of its parameter", StatusCode::invalid_argument);
+  if (is_open && !given) return entity.error("needs an interval of its parameter", StatusCode::invalid_argument);
   const Interval range = given.value_or(Interval{0, full_turn});
   const bool is_too_long = range.to - range.from > full_turn * (1 + 1e-12);
-  if (!is_parabola && (is_too_long || std::abs(range.from) > max_angle))
+  if (!is_open && (is_too_long || std::abs(range.from) > max_angle))
     return entity.error("an interval of angles must not be longer than a full turn", StatusCode::invalid_argument);
+  constexpr double max_hyperbolic_angle = 50;
+  if (is_hyperbola && std::max(-range.from, range.to) > max_hyperbolic_angle)
+    return entity.error("an interval of its parameter goes too far", StatusCode::invalid_argument);
   const Result<Frame> frame = placement(position);
   if (!frame) return frame.status();
   if (is_parabola) return parabola_arc(frame->origin, frame->x, frame->y, first, range);
+  if (is_hyperbola) return hyperbola_arcs(frame->origin, first * frame->x, second * frame->y, range);
   return ellipse_arcs(frame->origin, first * frame->x, second * frame->y, range);
 }
 
-Result<SplineLine> StepGeometry::spline(StepEntity& entity, const Range& range) const {
+Result<SplineLine> StepCurves::spline(StepEntity& entity, const Range& range) const {
   SplineLine out;
   const bool is_polyline = entity.is("POLYLINE");
   const SplineAttributes place = spline_attributes(entity, "CURVE");
@@ -128,7 +134,7 @@ Result<SplineLine> StepGeometry::spline(StepEntity& entity, const Range& range) 
   return out;
 }
 
-Result<double> StepGeometry::curve_scale(std::uint64_t number, int depth) const {
+Result<double> StepCurves::curve_scale(std::uint64_t number, int depth) const {
   StepEntity entity(index_, number);
   if (depth > max_depth) entity.fail("is made of too many curves, or of itself");
   if (!entity.status().ok()) return entity.status();
@@ -139,8 +145,8 @@ Result<double> StepGeometry::curve_scale(std::uint64_t number, int depth) const 
     return 2 * focal * units_.length;
   }
   const bool is_line = entity.is("LINE");
-  if (!is_line && !is_wrapper(entity) && !entity.is("TRIMMED_CURVE")) return 1.0;
-  const std::uint64_t inner = is_line ? entity.reference(entity.attribute(2)) : inner_curve(entity);
+  if (!is_line && !is_step_wrapper(entity) && !entity.is("TRIMMED_CURVE")) return 1.0;
+  const std::uint64_t inner = is_line ? entity.reference(entity.attribute(2)) : inner_step_curve(entity);
   if (!entity.status().ok()) return entity.status();
   if (!is_line) return curve_scale(inner, depth + 1);
   const Result<Vec3> along = vector(inner);
@@ -148,8 +154,8 @@ Result<double> StepGeometry::curve_scale(std::uint64_t number, int depth) const 
   return length(*along);
 }
 
-/// Returns the parameter of a point of a line, a circle or an ellipse that is nearest to `p`, or almost so.
-Result<double> StepGeometry::inverted(StepEntity& basis, const Vec3& p) const {
+/// Returns the parameter of a point of a line or a conic that is nearest to `p`, or almost so.
+Result<double> StepCurves::inverted(StepEntity& basis, const Vec3& p) const {
   const std::uint64_t at = basis.reference(basis.attribute(1));
   if (basis.is("LINE")) {
     const std::uint64_t along = basis.reference(basis.attribute(2));
@@ -160,21 +166,39 @@ Result<double> StepGeometry::inverted(StepEntity& basis, const Vec3& p) const {
     if (!by) return by.status();
     return dot(p - *start, normalized(*by));
   }
-  if (!basis.is("CIRCLE") && !basis.is("ELLIPSE"))
-    return basis.error("is trimmed by points, which is only possible on lines, circles and ellipses",
-                       StatusCode::unsupported);
-  const double first = basis.positive(basis.attribute(2), "radius");
-  const double second = basis.is("ELLIPSE") ? basis.positive(basis.attribute(3), "radius") : first;
+  const bool is_parabola = basis.is("PARABOLA"), is_hyperbola = basis.is("HYPERBOLA");
+  if (!is_parabola && !is_hyperbola && !basis.is("CIRCLE") && !basis.is("ELLIPSE"))
+    return basis.error("is trimmed by points, which is only possible on lines and conics", StatusCode::unsupported);
+  const double first = units_.length * basis.positive(basis.attribute(2), "radius");
+  const bool has_second = is_hyperbola || basis.is("ELLIPSE");
+  const double second = has_second ? units_.length * basis.positive(basis.attribute(3), "radius") : first;
   if (!basis.status().ok()) return basis.status();
   const Result<Frame> frame = placement(at);
   if (!frame) return frame.status();
   const Vec3 local = frame->local(p);
+  if (is_parabola) return local.y;
+  if (is_hyperbola) return std::asinh(local.y / second);
   return std::atan2(local.y / second, local.x / first);
+}
+
+/// Returns the direction along which the parameter of a line, a parabola or a hyperbola grows.
+Result<Vec3> StepCurves::growing_direction(StepEntity& curve) const {
+  const bool is_line = curve.is("LINE");
+  const std::uint64_t from = curve.reference(curve.attribute(is_line ? 2 : 1));
+  if (!curve.status().ok()) return curve.status();
+  if (is_line) {
+    const Result<Vec3> by = vector(from);
+    if (!by) return by.status();
+    return normalized(*by);
+  }
+  const Result<Frame> frame = placement(from);
+  if (!frame) return frame.status();
+  return frame->y;
 }
 
 /// Returns one end of a trimmed curve as our parameter of its basis. The k-th attribute lists a point, a parameter or
 /// both; the point counts if the file prefers it and it can be used.
-Result<double> StepGeometry::trim(StepEntity& entity, std::size_t k, std::uint64_t basis, double scale) const {
+Result<double> StepCurves::trim(StepEntity& entity, std::size_t k, std::uint64_t basis, double scale) const {
   std::optional<double> value;
   std::optional<std::uint64_t> at;
   for (const std::size_t select : entity.list(entity.attribute(k))) {
@@ -196,7 +220,7 @@ Result<double> StepGeometry::trim(StepEntity& entity, std::size_t k, std::uint64
   return *value;
 }
 
-Result<SplineLine> StepGeometry::trimmed(StepEntity& entity, const Range& range, int depth) const {
+Result<SplineLine> StepCurves::trimmed(StepEntity& entity, const Range& range, int depth) const {
   const std::uint64_t basis = entity.reference(entity.attribute(1));
   const bool agrees = entity.logical(entity.attribute(4));
   if (!entity.status().ok()) return entity.status();

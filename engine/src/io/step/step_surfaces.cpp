@@ -1,6 +1,7 @@
 // Surfaces of StepGeometry.
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -68,6 +69,22 @@ void read_weights(StepEntity& entity, Net& net) {
 
 }  // namespace
 
+Result<FaceSurface> elementary_surface(const StepElementary& of, const Domain& box) {
+  switch (of.kind) {
+    case StepElementaryKind::plane:
+      return plane_surface(of.frame, box);
+    case StepElementaryKind::cylinder:
+      return cylinder_surface(of.frame, of.radius, box);
+    case StepElementaryKind::cone:
+      return cone_surface(of.frame, of.radius, of.half_angle, box);
+    case StepElementaryKind::sphere:
+      return torus_surface(of.frame, 0, of.radius, box);
+    case StepElementaryKind::torus:
+      break;
+  }
+  return torus_surface(of.frame, of.radius, of.minor, box);
+}
+
 Result<FaceSurface> StepGeometry::surface(std::uint64_t number, const std::optional<Domain>& box) const {
   Result<FaceSurface> made = face(number, box, 0);
   // Errors of splines do not name the entity yet; all others begin with its number.
@@ -88,31 +105,90 @@ Result<FaceSurface> StepGeometry::face(std::uint64_t number, const std::optional
   return entity.error("is no surface that can be converted", StatusCode::unsupported);
 }
 
-Result<FaceSurface> StepGeometry::elementary(StepEntity& entity, const std::optional<Domain>& given) const {
+std::uint64_t StepGeometry::bare_surface(std::uint64_t number) const {
+  StepEntity entity(index_);
+  for (int depth = 0; depth <= max_depth; ++depth) {
+    entity.read(number);
+    if (!entity.is("RECTANGULAR_TRIMMED_SURFACE")) return number;
+    const std::uint64_t inner = entity.reference(entity.attribute(1));
+    if (!entity.status().ok()) return number;
+    number = inner;
+  }
+  return number;
+}
+
+Result<std::optional<StepElementary>> StepGeometry::elementary(std::uint64_t number) const {
+  StepEntity entity(index_, number);
+  if (!entity.status().ok()) return entity.status();
+  if (!is_elementary(entity)) return std::optional<StepElementary>();
+  Result<StepElementary> made = elementary(entity);
+  if (!made) return made.status();
+  return std::optional<StepElementary>(*made);
+}
+
+Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   const bool is_plane = entity.is("PLANE"), is_cone = entity.is("CONICAL_SURFACE"), is_round = is_torus(entity);
   const std::uint64_t position = entity.reference(entity.attribute(1));
   const double given_radius = is_plane  ? 1
                               : is_cone ? entity.real(entity.attribute(2))
                                         : entity.positive(entity.attribute(2), "radius");
-  const double minor = is_round ? units_.length * entity.positive(entity.attribute(3), "minor radius") : 0;
-  const double half_angle = is_cone ? units_.angle * entity.real(entity.attribute(3)) : 0;
-  const double radius = units_.length * given_radius;
+  StepElementary out;
+  out.kind = is_plane                         ? StepElementaryKind::plane
+             : is_cone                        ? StepElementaryKind::cone
+             : is_round                       ? StepElementaryKind::torus
+             : entity.is("SPHERICAL_SURFACE") ? StepElementaryKind::sphere
+                                              : StepElementaryKind::cylinder;
+  out.radius = units_.length * given_radius;
+  out.minor = is_round ? units_.length * entity.positive(entity.attribute(3), "minor radius") : 0;
+  out.half_angle = is_cone ? units_.angle * entity.real(entity.attribute(3)) : 0;
   if (given_radius < 0) entity.fail("its radius is " + text(given_radius) + ", expected 0 or more");
-  if (is_cone && !(std::abs(half_angle) < turn / 4))
-    entity.fail("its half angle is " + text(half_angle) + " radians, expected less than a right angle");
+  if (is_cone && !(std::abs(out.half_angle) < turn / 4))
+    entity.fail("its half angle is " + text(out.half_angle) + " radians, expected less than a right angle");
   if (!entity.status().ok()) return entity.status();
-  const bool is_closed = is_round || entity.is("SPHERICAL_SURFACE");
-  if (!given && !is_closed) return needs_box(entity);
-  const Domain box = given ? *given : closed_box(entity, radius, minor);
-  if (!entity.status().ok()) return entity.status();
-  if (Status status = is_plane ? Status() : check_angles(entity, range_u(box)); !status.ok()) return status;
-  if (Status status = is_closed ? check_angles(entity, range_v(box)) : Status(); !status.ok()) return status;
   const Result<Frame> frame = placement(position);
   if (!frame) return frame.status();
-  if (is_plane) return plane_surface(*frame, box);
-  if (is_cone) return cone_surface(*frame, radius, half_angle, box);
-  if (is_round) return torus_surface(*frame, radius, minor, box);
-  return is_closed ? torus_surface(*frame, 0, radius, box) : cylinder_surface(*frame, radius, box);
+  out.frame = *frame;
+  constexpr double far = std::numeric_limits<double>::infinity();
+  out.whole = is_plane                                             ? Domain{-far, far, -far, far}
+              : is_round || out.kind == StepElementaryKind::sphere ? closed_box(entity, out.radius, out.minor)
+                                                                   : Domain{0, turn, -far, far};
+  if (!entity.status().ok()) return entity.status();
+  return out;
+}
+
+Result<FaceSurface> StepGeometry::elementary(StepEntity& entity, const std::optional<Domain>& given) const {
+  const Result<StepElementary> made = elementary(entity);
+  if (!made) return made.status();
+  const bool is_plane = made->kind == StepElementaryKind::plane;
+  const bool is_closed = made->kind == StepElementaryKind::sphere || made->kind == StepElementaryKind::torus;
+  if (!given && !is_closed) return needs_box(entity);
+  const Domain box = given ? *given : made->whole;
+  if (Status status = is_plane ? Status() : check_angles(entity, range_u(box)); !status.ok()) return status;
+  if (Status status = is_closed ? check_angles(entity, range_v(box)) : Status(); !status.ok()) return status;
+  return elementary_surface(*made, box);
+}
+
+Result<std::optional<StepSweep>> StepGeometry::sweep(std::uint64_t number, const Box3& extent) const {
+  StepEntity entity(index_, number);
+  StepSweep out;
+  out.is_turned = entity.is("SURFACE_OF_REVOLUTION");
+  if (!out.is_turned && !entity.is("SURFACE_OF_LINEAR_EXTRUSION")) return std::optional<StepSweep>();
+  const std::uint64_t along = entity.reference(entity.attribute(1)), by = entity.reference(entity.attribute(2));
+  if (!entity.status().ok()) return entity.status();
+  const Result<Vec3> direction = out.is_turned ? Vec3{} : vector(by);
+  if (!direction) return direction.status();
+  out.direction = normalized(*direction);
+  const Result<Frame> frame = out.is_turned ? placement(by) : Frame{};
+  if (!frame) return frame.status();
+  out.frame = *frame;
+  const Result<Interval> reach = profile_range(along, out.is_turned ? &out.frame : nullptr, out.direction, extent);
+  if (!reach) return reach.status();
+  Result<SplineLine> profile = line(along, reach->from < reach->to ? Range(*reach) : Range(), 1);
+  if (!profile) return profile.status();
+  out.profile = *std::move(profile);
+  if (out.is_turned)
+    for (Vec3& p : out.profile.points) p = out.frame.local(p);
+  return std::optional<StepSweep>(std::move(out));
 }
 
 Result<FaceSurface> StepGeometry::swept(StepEntity& entity, const std::optional<Domain>& box, int depth) const {

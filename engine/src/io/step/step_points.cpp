@@ -1,4 +1,4 @@
-#include "io/step/step_geometry.h"
+#include "io/step/step_points.h"
 
 #include <cmath>
 
@@ -36,7 +36,7 @@ void require(StepEntity& entity, std::string_view kind) {
 
 }  // namespace
 
-Result<Vec3> StepGeometry::point(std::uint64_t number) const {
+Result<Vec3> StepPoints::point(std::uint64_t number) const {
   StepEntity entity(index_, number);
   require(entity, "CARTESIAN_POINT");
   const Vec3 p = units_.length * coordinates(entity, units_.dimension);
@@ -46,7 +46,7 @@ Result<Vec3> StepGeometry::point(std::uint64_t number) const {
 }
 
 /// Reads a list of points, with one record for all.
-Result<std::vector<Vec3>> StepGeometry::points(StepEntity& owner, std::size_t list) const {
+Result<std::vector<Vec3>> StepPoints::points(StepEntity& owner, std::size_t list) const {
   std::vector<Vec3> out;
   const std::vector<std::uint64_t> numbers = owner.references(list);
   if (!owner.status().ok()) return owner.status();
@@ -61,7 +61,7 @@ Result<std::vector<Vec3>> StepGeometry::points(StepEntity& owner, std::size_t li
   return out;
 }
 
-Result<Vec3> StepGeometry::direction(std::uint64_t number) const {
+Result<Vec3> StepPoints::direction(std::uint64_t number) const {
   StepEntity entity(index_, number);
   require(entity, "DIRECTION");
   const Vec3 ratios = coordinates(entity, units_.dimension);
@@ -70,7 +70,7 @@ Result<Vec3> StepGeometry::direction(std::uint64_t number) const {
   return normalized(ratios);
 }
 
-Result<Vec3> StepGeometry::direction_or(StepEntity& owner, std::size_t at, const Vec3& otherwise) const {
+Result<Vec3> StepPoints::direction_or(StepEntity& owner, std::size_t at, const Vec3& otherwise) const {
   if (owner.is_omitted(at)) return otherwise;
   const std::uint64_t number = owner.reference(at);
   if (!owner.status().ok()) return owner.status();
@@ -78,7 +78,7 @@ Result<Vec3> StepGeometry::direction_or(StepEntity& owner, std::size_t at, const
 }
 
 /// Reads a VECTOR, of length in the model's unit.
-Result<Vec3> StepGeometry::vector(std::uint64_t number) const {
+Result<Vec3> StepPoints::vector(std::uint64_t number) const {
   StepEntity entity(index_, number);
   require(entity, "VECTOR");
   const std::uint64_t along = entity.reference(entity.attribute(1));
@@ -90,7 +90,7 @@ Result<Vec3> StepGeometry::vector(std::uint64_t number) const {
   return magnitude * *unit;
 }
 
-Result<Frame> StepGeometry::placement(std::uint64_t number) const {
+Result<Frame> StepPoints::placement(std::uint64_t number) const {
   StepEntity entity(index_, number);
   const bool is_flat = entity.is("AXIS2_PLACEMENT_2D"), is_axis = entity.is("AXIS1_PLACEMENT");
   if (!is_flat && !is_axis && !entity.is("AXIS2_PLACEMENT_3D")) entity.fail("expected AXIS2_PLACEMENT_3D");

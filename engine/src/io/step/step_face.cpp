@@ -1,0 +1,80 @@
+#include "io/step/step_face.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "io/exact/transposed.h"
+#include "io/step/step_face_box.h"
+#include "io/step/step_inverse.h"
+#include "io/step/step_trace.h"
+#include "io/step/step_trim_curves.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// The box of a face's edges and vertices.
+Result<Box3> extent_of_face(const StepFace& face, const StepFaceContext& context) {
+  Box3 out;
+  for (const StepBound& bound : face.bounds) {
+    if (bound.vertex != no_id) out.extend(context.vertices[bound.vertex].position);
+    for (const StepEdgeUse& use : bound.uses) {
+      const std::optional<Curve>& curve = context.edges[use.edge].curve;
+      if (!curve) return Status(StatusCode::unsupported, "an edge of it cannot be read");
+      for (const Vec3& p : curve->points()) out.extend(p);
+    }
+  }
+  return out;
+}
+
+/// A surface that is a face by itself.
+Result<StepFaceResult> whole_surface(const StepFace& face, const StepFaceContext& context) {
+  Result<FaceSurface> made = context.geometry.surface(face.surface);
+  if (!made) return made.status();
+  StepFaceResult out{std::move(made->surface), {}, true, {}};
+  if (!face.agrees)
+    if (Status status = transpose(out.surface, out.loops); !status.ok()) return status;
+  return out;
+}
+
+}  // namespace
+
+Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& context) {
+  if (face.bounds.empty()) return whole_surface(face, context);
+  const Result<Box3> extent = extent_of_face(face, context);
+  if (!extent) return extent.status();
+  const Result<std::unique_ptr<SurfaceInverse>> inverse =
+      SurfaceInverse::make(context.geometry, face.surface, *extent, context.tolerance);
+  if (!inverse) return inverse.status();
+  const EdgeTracer tracer(**inverse, context.edges, face.agrees);
+  std::vector<LoopTrace> loops;
+  std::vector<ParameterPoint> vertices;
+  for (const StepBound& bound : face.bounds) {
+    if (bound.vertex != no_id) vertices.push_back((*inverse)->find(context.vertices[bound.vertex].position));
+    if (!bound.uses.empty()) loops.push_back(tracer.loop(bound, context.reversed_curves));
+  }
+  const bool is_hole = keep_outside(**inverse, loops, face.agrees);
+  const Result<FaceBox> box = step_face_box(**inverse, loops, vertices, face.agrees, context.tolerance);
+  if (!box) return box.status();
+  Result<FaceSurface> surface = (*inverse)->surface(box->domain);
+  if (!surface) return surface.status();
+  StepFaceResult out{std::move(surface->surface), {}, false, {}};
+  const double fit_tolerance = 1e-3 * context.tolerance;
+  const TrimCurveMaker maker(**inverse, surface->parameters, *box, fit_tolerance);
+  const bool has_outer = std::ranges::any_of(loops, [](const LoopTrace& loop) { return loop.is_outer; });
+  for (const LoopTrace& loop : loops) {
+    TrimLoop& made = out.loops.emplace_back();
+    made.hole = is_hole || (has_outer && !loop.is_outer);
+    for (const EdgeTrace& piece : loop.pieces) {
+      if (piece.edge == no_id) out.poles.push_back({out.loops.size() - 1, made.curves.size(), piece.vertex});
+      const BrepEdge* const edge = piece.edge == no_id ? nullptr : &context.edges[piece.edge];
+      if (Status status = maker.append(piece, edge, made); !status.ok()) return status;
+    }
+  }
+  out.whole = is_whole_box(out.loops, *box);
+  if (!face.agrees)
+    if (Status status = transpose(out.surface, out.loops); !status.ok()) return status;
+  return out;
+}
+
+}}  // namespace tessera::abi_0_1

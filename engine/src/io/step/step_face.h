@@ -1,0 +1,43 @@
+#pragma once
+// One face of a STEP file as a trimmed NURBS surface.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/step/step_geometry.h"
+#include "io/step/step_topology.h"
+#include "tessera/brep.h"
+#include "tessera/nurbs_surface.h"
+#include "tessera/status.h"
+#include "tessera/trim_loop.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// What faces of one part share.
+struct StepFaceContext {
+  const StepGeometry& geometry;
+  std::span<const BrepEdge> edges;
+  const std::vector<bool>& reversed_curves;  ///< of each edge, whether its curve runs from its end to its start
+  std::span<const BrepVertex> vertices;
+  double tolerance;  ///< points that are nearer to each other are one; > 0
+};
+
+/// A line along a pole, which needs an edge of its own.
+struct StepPole {
+  std::size_t loop = 0, curve = 0;
+  std::uint32_t vertex = no_id;
+};
+
+struct StepFaceResult {
+  BSplineSurface surface;
+  std::vector<TrimLoop> loops;
+  bool whole = false;  ///< one loop runs along all sides of the domain, and trims nothing
+  std::vector<StepPole> poles;
+};
+
+/// Converts a face. Errors: those of the geometry; unsupported (no bounds, no extent, an edge without a curve).
+Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& context);
+
+}}  // namespace tessera::abi_0_1

@@ -1,0 +1,267 @@
+#include "io/step/step_inverse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "io/exact/curve_foot.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+constexpr double turn_of_inverse = 2 * std::numbers::pi;
+
+/// The angle, moved by whole turns to be near another.
+double angle_near(double angle, double near) {
+  return angle + turn_of_inverse * std::round((near - angle) / turn_of_inverse);
+}
+
+/// The angle of a point about z, or `near` on the axis.
+double angle_about_z(const Vec3& local, double near) {
+  if (local.x == 0 && local.y == 0) return near;
+  return angle_near(std::atan2(local.y, local.x), near);
+}
+
+/// Planes, cylinders, cones, spheres and tori, in closed form.
+class ElementaryInverse : public SurfaceInverse {
+ public:
+  explicit ElementaryInverse(const StepElementary& of) : of_(of) {
+    whole_ = of.whole;
+    if (of.kind != StepElementaryKind::plane) period_.u = turn_of_inverse;
+    if (of.kind == StepElementaryKind::torus && std::isfinite(of.whole.v1 - of.whole.v0) &&
+        of.whole.v1 - of.whole.v0 >= turn_of_inverse)
+      period_.v = turn_of_inverse;
+    turns_u_ = period_.u > 0, turns_v_ = period_.v > 0;
+  }
+
+  ParameterPoint at(const Vec3& p, const ParameterPoint& near) const override {
+    Vec3 local = of_.frame.local(p);
+    const double ring = std::hypot(local.x, local.y);
+    switch (of_.kind) {
+      case StepElementaryKind::plane:
+        return {local.x, local.y};
+      case StepElementaryKind::cylinder:
+        return {angle_about_z(local, near.u), local.z};
+      case StepElementaryKind::cone: {
+        const double v = local.z / std::cos(of_.half_angle);
+        if (of_.radius + v * std::sin(of_.half_angle) < 0) local = -local;  // beyond the apex
+        return {angle_about_z(local, near.u), v};
+      }
+      case StepElementaryKind::sphere:
+        return {angle_about_z(local, near.u), std::atan2(local.z, ring)};
+      case StepElementaryKind::torus:
+        break;
+    }
+    const bool is_inner = of_.minor > of_.radius && of_.whole.v0 > 0;  // of a degenerate torus
+    if (is_inner) local = {-local.x, -local.y, local.z};
+    return {angle_about_z(local, near.u),
+            angle_near(std::atan2(local.z, (is_inner ? -ring : ring) - of_.radius), near.v)};
+  }
+
+  Vec3 point(const ParameterPoint& place) const override {
+    double ring = of_.radius, z = place.v;
+    switch (of_.kind) {
+      case StepElementaryKind::plane:
+        return of_.frame.at({place.u, place.v, 0});
+      case StepElementaryKind::cylinder:
+        break;
+      case StepElementaryKind::cone:
+        ring += place.v * std::sin(of_.half_angle), z *= std::cos(of_.half_angle);
+        break;
+      case StepElementaryKind::sphere:
+        ring *= std::cos(place.v), z = of_.radius * std::sin(place.v);
+        break;
+      case StepElementaryKind::torus:
+        ring += of_.minor * std::cos(place.v), z = of_.minor * std::sin(place.v);
+        break;
+    }
+    return of_.frame.at({ring * std::cos(place.u), ring * std::sin(place.u), z});
+  }
+
+  ParameterPoint speeds(const ParameterPoint& place) const override {
+    switch (of_.kind) {
+      case StepElementaryKind::plane:
+        return {1, 1};
+      case StepElementaryKind::cylinder:
+        return {of_.radius, 1};
+      case StepElementaryKind::cone:
+        return {std::abs(of_.radius + place.v * std::sin(of_.half_angle)), 1};
+      case StepElementaryKind::sphere:
+        return {std::abs(of_.radius * std::cos(place.v)), of_.radius};
+      case StepElementaryKind::torus:
+        break;
+    }
+    return {std::abs(of_.radius + of_.minor * std::cos(place.v)), of_.minor};
+  }
+
+  Result<FaceSurface> surface(const Domain& box) const override { return elementary_surface(of_, box); }
+  std::optional<double> apex() const override {
+    if (of_.kind != StepElementaryKind::cone || of_.half_angle == 0) return {};
+    return -of_.radius / std::sin(of_.half_angle);
+  }
+  const Frame* plane() const override { return of_.kind == StepElementaryKind::plane ? &of_.frame : nullptr; }
+
+ private:
+  StepElementary of_;
+};
+
+Result<Curve> profile_curve(const SplineLine& line) {
+  return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, line.range)
+                              : Curve::nurbs(line.degree, line.points, line.weights, line.knots, line.range);
+}
+
+/// The profile, cut to an interval within its range.
+SplineLine profile_part(const SplineLine& line, const Interval& range) {
+  SplineLine out = line;
+  out.range = covered(line.knots, line.degree, range);
+  out.arcs.reset();
+  return out;
+}
+
+/// Curves that are swept. The profile is searched in a plane in which the sweep is a point.
+class SweptInverse : public SurfaceInverse {
+ public:
+  SweptInverse(StepSweep sweep, Curve curve) : sweep_(std::move(sweep)), curve_(std::move(curve)) {
+    parameters_ = sample_parameters(curve_, 2 + 2 * curve_.degree());
+    for (const double t : parameters_) points_.push_back(flat(t).point);
+    const Interval d = curve_.domain();
+    constexpr double far = std::numeric_limits<double>::infinity();
+    whole_ = sweep_.is_turned ? Domain{0, turn_of_inverse, d.from, d.to} : Domain{d.from, d.to, -far, far};
+    const double length_of_period = d.to - d.from;
+    const double size = length(points_.front()) + length(points_.back());
+    const bool is_closed = length(position(curve_, d.from) - position(curve_, d.to)) <= 1e-9 * size;
+    turns_u_ = sweep_.is_turned;
+    if (turns_u_) period_.u = turn_of_inverse;
+    if (is_closed) (sweep_.is_turned ? period_.v : period_.u) = length_of_period;
+  }
+
+  ParameterPoint at(const Vec3& p, const ParameterPoint& near) const override { return places(p, &near); }
+  ParameterPoint find(const Vec3& p) const override { return places(p, nullptr); }
+
+  Vec3 point(const ParameterPoint& place) const override {
+    if (!sweep_.is_turned) return position(curve_, wrapped(place.u)) + place.v * sweep_.direction;
+    const Vec3 p = position(curve_, wrapped(place.v));
+    const double c = std::cos(place.u), s = std::sin(place.u);
+    return sweep_.frame.at({c * p.x - s * p.y, s * p.x + c * p.y, p.z});
+  }
+
+  ParameterPoint speeds(const ParameterPoint& place) const override {
+    const CurveJet jet = evaluate_jet(curve_, wrapped(sweep_.is_turned ? place.v : place.u));
+    if (!sweep_.is_turned) return {length(jet.first), 1};
+    return {std::hypot(jet.position.x, jet.position.y), length(jet.first)};
+  }
+
+  Result<FaceSurface> surface(const Domain& box) const override {
+    if (sweep_.is_turned) return revolved(sweep_.frame, range_u(box), profile_part(sweep_.profile, range_v(box)));
+    return extruded(profile_part(sweep_.profile, range_u(box)), sweep_.direction, range_v(box));
+  }
+
+  std::array<std::vector<double>, 2> knots() const override {
+    std::vector<double> of_profile(curve_.knots().begin(), curve_.knots().end());
+    if (sweep_.is_turned) return {std::vector<double>(), std::move(of_profile)};
+    return {std::move(of_profile), std::vector<double>()};
+  }
+
+ private:
+  double wrapped(double t) const {
+    const Interval d = curve_.domain();
+    const double period = sweep_.is_turned ? period_.v : period_.u;
+    if (period > 0 && (t < d.from || t > d.to)) t -= period * std::floor((t - d.from) / period);
+    return std::clamp(t, d.from, d.to);
+  }
+
+  /// A point of the profile in the plane: (distance from the axis, 0, height), or what is across the direction.
+  CurvePlace flat(double t) const {
+    const CurveJet jet = evaluate_jet(curve_, t);
+    if (!sweep_.is_turned) {
+      const Vec3& d = sweep_.direction;
+      return {jet.position - dot(jet.position, d) * d, jet.first - dot(jet.first, d) * d};
+    }
+    const double ring = std::hypot(jet.position.x, jet.position.y);
+    const double slope = ring > 0 ? (jet.position.x * jet.first.x + jet.position.y * jet.first.y) / ring
+                                  : std::hypot(jet.first.x, jet.first.y);
+    return {{ring, 0, jet.position.z}, {slope, 0, jet.first.z}};
+  }
+
+  ParameterPoint places(const Vec3& p, const ParameterPoint* near) const {
+    const Vec3 local = sweep_.is_turned ? sweep_.frame.local(p) : p;
+    const Vec3 goal = sweep_.is_turned ? Vec3{std::hypot(local.x, local.y), 0, local.z}
+                                       : p - dot(p, sweep_.direction) * sweep_.direction;
+    const double t = parameter(goal, near ? std::optional(sweep_.is_turned ? near->v : near->u) : std::nullopt);
+    const Vec3 there = position(curve_, wrapped(t));
+    if (!sweep_.is_turned) return {t, dot(p - there, sweep_.direction)};
+    const double near_u = near ? near->u : 0;
+    if (local.x == 0 && local.y == 0) return {near_u, t};
+    const bool on_axis = there.x == 0 && there.y == 0;
+    const double zero = on_axis ? 0 : std::atan2(there.y, there.x);
+    return {angle_near(std::atan2(local.y, local.x) - zero, near_u), t};
+  }
+
+  double parameter(const Vec3& goal, const std::optional<double>& near) const {
+    const Interval d = curve_.domain();
+    const auto at_t = [&](double t) { return flat(t); };
+    const double period = sweep_.is_turned ? period_.v : period_.u;
+    double best = 0;
+    bool found = false;
+    if (near) {
+      // A step beyond an end of a closed profile goes on at the other one.
+      best = refined_foot(at_t, goal, d, wrapped(*near));
+      found = length(flat(best).point - goal) <= tolerance_;
+    }
+    if (!found) {
+      const double other = nearest_foot(at_t, goal, d, parameters_, points_);
+      if (!near || length(flat(other).point - goal) < length(flat(best).point - goal)) best = other;
+    }
+    return period > 0 && near ? best + period * std::round((*near - best) / period) : best;
+  }
+
+  StepSweep sweep_;
+  Curve curve_;
+  std::vector<double> parameters_;
+  std::vector<Vec3> points_;  ///< in the plane
+
+ public:
+  void set_tolerance(double tolerance) { tolerance_ = tolerance; }
+};
+
+}  // namespace
+
+bool SurfaceInverse::is_pole_u(const ParameterPoint& place) const {
+  const double width = period_.u > 0 ? period_.u : whole_.u1 - whole_.u0;
+  return std::isfinite(width) && speeds(place).u * width <= tolerance_;
+}
+
+bool SurfaceInverse::is_pole_v(const ParameterPoint& place) const {
+  const double width = period_.v > 0 ? period_.v : whole_.v1 - whole_.v0;
+  return std::isfinite(width) && speeds(place).v * width <= tolerance_;
+}
+
+std::unique_ptr<SurfaceInverse> make_spline_inverse(BSplineSurface surface, double tolerance);
+
+Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make(const StepGeometry& geometry, std::uint64_t surface,
+                                                             const Box3& extent, double tolerance) {
+  surface = geometry.bare_surface(surface);
+  const Result<std::optional<StepElementary>> simple = geometry.elementary(surface);
+  if (!simple) return simple.status();
+  std::unique_ptr<SurfaceInverse> out;
+  if (*simple) {
+    out = std::make_unique<ElementaryInverse>(**simple);
+  } else {
+    Result<std::optional<StepSweep>> sweep = geometry.sweep(surface, extent);
+    if (!sweep) return sweep.status();
+    if (*sweep) {
+      Result<Curve> curve = profile_curve((*sweep)->profile);
+      if (!curve) return curve.status();
+      out = std::make_unique<SweptInverse>(*std::move(*sweep), *std::move(curve));
+    } else {
+      Result<FaceSurface> spline = geometry.surface(surface);
+      if (!spline) return spline.status();
+      out = make_spline_inverse(std::move(spline->surface), tolerance);
+    }
+  }
+  out->tolerance_ = tolerance;
+  return out;
+}
+
+}}  // namespace tessera::abi_0_1

@@ -1,0 +1,200 @@
+#include "io/step/step_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "io/exact/usable_edges.h"
+#include "io/step/step_face.h"
+#include "io/step/step_topology.h"
+#include "parallel/parallel_for.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// Points that are nearer to each other are one: what the file states, within reason for a part of this size.
+double tolerance_of(double uncertainty, const Box3& box) {
+  const double size = box.diagonal();
+  const double least = std::max(1e-12 * std::max(max_abs(box.lower), max_abs(box.upper)), 1e-9 * size);
+  const double stated = uncertainty > 0 ? uncertainty : 1e-6 * size;
+  return std::clamp(stated, std::max(least, 1e-100), std::max({least, 1e-3 * size, 1e-100}));
+}
+
+/// Makes one part.
+class ShapeMaker {
+ public:
+  ShapeMaker(const StepIndex& index, const StepShapeInput& input, StepShapeFaults& faults, const Execution& execution)
+      : geometry_(index, input.units),
+        input_(input),
+        faults_(faults),
+        index_(index),
+        execution_{.cancel = execution.cancel} {}
+
+  Result<Shape> make() {
+    Result<StepTopology> topology = StepTopology::make(index_, input_.items, execution_);
+    if (!topology) return topology.status();
+    topology_ = *std::move(topology);
+    for (std::string& sentence : topology_.unread) faults_.left_out.push_back(std::move(sentence));
+    if (Status status = make_vertices(); !status.ok()) return status;
+    if (Status status = make_edges(); !status.ok()) return status;
+    if (Status status = make_faces(); !status.ok()) return status;
+    shape_.name = input_.name;
+    shape_.solid_count = topology_.solid_count;
+    for (const std::uint32_t solid : topology_.shells) shape_.shells.push_back({{}, solid});
+    for (std::size_t k = 0; k < results_.size(); ++k) add_face(k);
+    for (const UnusableEdges& one : drop_unusable_edges(shape_))
+      faults_.changed.push_back(words(kept_[one.face]) + " is read without shared edges: " + one.reason);
+    return std::move(shape_);
+  }
+
+ private:
+  static constexpr std::size_t grain = 16;
+
+  Status make_vertices() {
+    shape_.vertices.resize(topology_.vertices.size());
+    std::vector<Status> faults(shape_.vertices.size());
+    Status status = parallel_for(shape_.vertices.size(), 256, execution_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const Result<Vec3> p = geometry_.point(topology_.vertices[k]);
+        if (p)
+          shape_.vertices[k].position = *p;
+        else
+          faults[k] = p.status();
+      }
+    });
+    if (!status.ok()) return status;
+    Box3 box;
+    for (std::size_t k = 0; k < faults.size(); ++k)
+      if (faults[k].ok()) box.extend(shape_.vertices[k].position);
+    tolerance_ = tolerance_of(input_.uncertainty, box);
+    for (BrepVertex& vertex : shape_.vertices) vertex.tolerance = tolerance_;
+    for (StepEdge& edge : topology_.edges)
+      for (const std::uint32_t vertex : {edge.start, edge.end})
+        if (edge.status.ok() && !faults[vertex].ok()) edge.status = faults[vertex];
+    for (StepFace& face : topology_.faces)
+      for (const StepBound& bound : face.bounds)
+        if (bound.vertex != no_id && face.status.ok()) face.status = faults[bound.vertex];
+    return {};
+  }
+
+  Status make_edges() {
+    shape_.edges.resize(topology_.edges.size());
+    std::vector<char> reversed(shape_.edges.size());
+    Status status = parallel_for(shape_.edges.size(), grain, execution_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) reversed[k] = make_edge(topology_.edges[k], shape_.edges[k]);
+    });
+    reversed_.assign(reversed.begin(), reversed.end());
+    return status;
+  }
+
+  /// Makes an edge, which runs along its curve. Returns whether that is against the file's edge.
+  bool make_edge(StepEdge& edge, BrepEdge& out) const {
+    if (!edge.status.ok()) return false;
+    Result<StepEdgeCurve> curve = curve_of(edge);
+    if (!curve) {
+      edge.status = curve.status();
+      return false;
+    }
+    out.start = curve->reversed ? edge.end : edge.start;
+    out.end = curve->reversed ? edge.start : edge.end;
+    out.range = curve->curve.curve.domain();
+    out.curve = std::move(curve->curve.curve);
+    out.tolerance = tolerance_;
+    out.same_parameter = true;
+    return curve->reversed;
+  }
+
+  Result<StepEdgeCurve> curve_of(const StepEdge& edge) const {
+    const std::array<Vec3, 2> ends{shape_.vertices[edge.start].position, shape_.vertices[edge.end].position};
+    if (edge.number != 0) return geometry_.edge_curve(edge.curve, ends, edge.agrees, tolerance_);
+    const std::array<double, 4> knots{0, 0, 1, 1};
+    Result<Curve> line = Curve::b_spline(1, ends, knots);
+    if (!line) return line.status();
+    return StepEdgeCurve{{*std::move(line), {}}, false};
+  }
+
+  Status make_faces() {
+    results_.resize(topology_.faces.size());
+    const StepFaceContext context{geometry_, shape_.edges, reversed_, shape_.vertices, tolerance_};
+    for (StepFace& face : topology_.faces)
+      for (const StepBound& bound : face.bounds)
+        for (const StepEdgeUse& use : bound.uses)
+          if (face.status.ok()) face.status = topology_.edges[use.edge].status;
+    return parallel_for(topology_.faces.size(), 4, execution_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        StepFace& face = topology_.faces[k];
+        if (!face.status.ok()) continue;
+        Result<StepFaceResult> made = step_face(face, context);
+        if (made)
+          results_[k] = *std::move(made);
+        else
+          face.status = made.status();
+      }
+    });
+  }
+
+  /// "face #51 (nut)".
+  std::string words(std::size_t face) const {
+    return "face #" + std::to_string(topology_.faces[face].number) +
+           (input_.name.empty() ? "" : " (" + input_.name + ")");
+  }
+
+  void add_face(std::size_t k) {
+    const StepFace& face = topology_.faces[k];
+    if (!results_[k]) {
+      if (faults_.left_out.empty()) faults_.first_code = face.status.code();
+      return faults_.left_out.push_back(words(k) + " is left out: " + face.status.message());
+    }
+    StepFaceResult& made = *results_[k];
+    for (const StepPole& pole : made.poles) {
+      made.loops[pole.loop].coedges[pole.curve].edge = static_cast<std::uint32_t>(shape_.edges.size());
+      BrepEdge& edge = shape_.edges.emplace_back();
+      edge.start = edge.end = pole.vertex;
+      edge.tolerance = tolerance_, edge.degenerate = true;
+    }
+    for (TrimLoop& loop : made.loops)
+      if (std::ranges::any_of(loop.coedges, [](const Coedge& coedge) { return coedge.edge == no_id; })) {
+        loop.coedges.clear();
+        faults_.changed.push_back(words(k) + " is read without shared edges: a curve of its border turns back");
+      }
+    const auto index = static_cast<std::uint32_t>(shape_.faces.size());
+    ShapeFace& out = shape_.faces.emplace_back(ShapeFace{{input_.name, std::move(made.surface), {}}});
+    (made.whole ? out.outline : out.trims) = std::move(made.loops);
+    kept_.push_back(k);
+    out.colour = colour_of(face);
+    for (std::uint32_t whole = face.whole; whole != no_id; whole = topology_.wholes[whole].above)
+      if (const std::uint32_t shell = topology_.wholes[whole].shell; shell != no_id) {
+        shape_.shells[shell].faces.push_back(index);
+        break;
+      }
+  }
+
+  std::optional<Colour> colour_of(const StepFace& face) const {
+    if (!input_.colour) return {};
+    if (const Colour* const own = input_.colour(face.number)) return *own;
+    for (std::uint32_t whole = face.whole; whole != no_id; whole = topology_.wholes[whole].above)
+      if (const Colour* const above = input_.colour(topology_.wholes[whole].number)) return *above;
+    return {};
+  }
+
+  StepGeometry geometry_;
+  const StepShapeInput& input_;
+  StepShapeFaults& faults_;
+  const StepIndex& index_;
+  Execution execution_;
+  StepTopology topology_;
+  Shape shape_;
+  std::vector<bool> reversed_;
+  std::vector<std::optional<StepFaceResult>> results_;
+  std::vector<std::size_t> kept_;  ///< of each face of the shape, its place in the topology
+  double tolerance_ = 0;
+};
+
+}  // namespace
+
+Result<Shape> step_shape(const StepIndex& index, const StepShapeInput& input, StepShapeFaults& faults,
+                         const Execution& execution) {
+  return ShapeMaker(index, input, faults, execution).make();
+}
+
+}}  // namespace tessera::abi_0_1

@@ -1,0 +1,39 @@
+#pragma once
+// One part of a STEP file as a shape.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/step/step_geometry.h"
+#include "tessera/execution.h"
+#include "tessera/model.h"
+#include "tessera/status.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// A part: items of representations that stand together.
+struct StepShapeInput {
+  std::span<const std::uint64_t> items;
+  StepUnits units;
+  double uncertainty = 0;  ///< of lengths, in the model's unit; 0: none is stated
+  std::string name;
+  /// Returns the colour of an item, such as a face or a solid, or nullptr.
+  std::function<const Colour*(std::uint64_t)> colour;
+};
+
+/// What a shape lacks.
+struct StepShapeFaults {
+  std::vector<std::string> left_out;                ///< faces, one sentence each
+  std::vector<std::string> changed;                 ///< faces that differ from the file, one sentence each
+  StatusCode first_code = StatusCode::parse_error;  ///< of the first face that is left out
+};
+
+/// Reads a part. Faces that cannot be read are left out, with a sentence in `faults`. Errors: cancelled, out_of_memory.
+Result<Shape> step_shape(const StepIndex& index, const StepShapeInput& input, StepShapeFaults& faults,
+                         const Execution& execution);
+
+}}  // namespace tessera::abi_0_1

@@ -1,0 +1,197 @@
+#include "io/step/step_trim_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "convert/fit/lobatto_fit.h"
+#include "io/exact/coedge_parameter.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+/// The curve with mapped points; backwards if `reversed`.
+template <class Map>
+Result<Curve> mapped_curve(const Curve& curve, bool reversed, const Map& map) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : curve.points()) points.push_back(map(p));
+  std::vector<double> weights(curve.weights().begin(), curve.weights().end());
+  std::vector<double> knots(curve.knots().begin(), curve.knots().end());
+  const Interval d = curve.domain();
+  if (reversed) {
+    std::ranges::reverse(points);
+    std::ranges::reverse(weights);
+    std::ranges::reverse(knots);
+    for (double& knot : knots) knot = knot == d.from ? d.to : knot == d.to ? d.from : d.from + d.to - knot;
+  }
+  return weights.empty() ? Curve::b_spline(curve.degree(), points, knots, d)
+                         : Curve::nurbs(curve.degree(), points, weights, knots, d);
+}
+
+Result<Curve> straight_curve(const Vec3& a, const Vec3& b, const Interval& range) {
+  const std::array<Vec3, 2> points{a, b};
+  const std::array<double, 4> knots{range.from, range.from, range.to, range.to};
+  return Curve::b_spline(1, points, knots);
+}
+
+bool is_line_or_conic(const Curve& edge) {
+  return (edge.degree() == 1 && edge.points().size() == 2) || (edge.degree() == 2 && edge.is_rational());
+}
+
+}  // namespace
+
+double TrimCurveMaker::our(bool along_u, double theirs) const {
+  const std::optional<Arcs>& arcs = along_u ? parameters_.u : parameters_.v;
+  return arcs ? arcs->parameter(theirs) : theirs;
+}
+
+ParameterPoint TrimCurveMaker::ours(const ParameterPoint& theirs) const {
+  return {our(true, theirs.u), our(false, theirs.v)};
+}
+
+/// Places between two samples.
+ParameterPoint TrimCurveMaker::near(const EdgeTrace& piece, double s) const {
+  const auto before = [&](const TraceSample& sample, double value) {
+    return piece.reversed ? sample.s > value : sample.s < value;
+  };
+  const auto& samples = piece.samples;
+  auto next = std::lower_bound(samples.begin() + 1, samples.end() - 1, s, before);
+  const TraceSample &a = *(next - 1), &b = *next;
+  const double x = a.s == b.s ? 0 : std::clamp((s - a.s) / (b.s - a.s), 0.0, 1.0);
+  return {a.place.u + x * (b.place.u - a.place.u), a.place.v + x * (b.place.v - a.place.v)};
+}
+
+/// Whether a parameter is the same all along, up to the tolerance; `value`: then a side of the box that is near.
+bool TrimCurveMaker::is_constant(const EdgeTrace& piece, bool along_u, double& value) const {
+  const auto of = [&](const ParameterPoint& p) { return along_u ? p.u : p.v; };
+  double low = of(piece.first()), high = low, speed = 0;
+  for (const TraceSample& sample : piece.samples) {
+    low = std::min(low, of(sample.place)), high = std::max(high, of(sample.place));
+    speed = std::max(speed, of(inverse_.speeds(sample.place)));
+  }
+  value = 0.5 * (low + high);
+  if (!((high - low) * speed <= 2 * tolerance_)) return false;
+  const Domain& d = box_.domain;
+  const double snap = along_u ? box_.tolerance_u : box_.tolerance_v;
+  for (const double side : along_u ? std::array{d.u0, d.u1} : std::array{d.v0, d.v1})
+    if (std::abs(side - value) <= snap) value = side;
+  return true;
+}
+
+Result<Curve> TrimCurveMaker::on_plane(const EdgeTrace& piece, const Curve& edge, const Frame& frame) const {
+  return mapped_curve(edge, piece.reversed, [&](const Vec3& p) {
+    const Vec3 local = frame.local(p);
+    return Vec3{local.x, local.y, 0};
+  });
+}
+
+/// Edge parameters at which the surface's arcs meet, found by halving intervals between samples.
+std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curve& edge, bool along_u) const {
+  std::vector<double> out;
+  const std::optional<Arcs>& arcs = along_u ? parameters_.u : parameters_.v;
+  if (!arcs) return out;
+  const auto value = [&](double s) {
+    const ParameterPoint place = inverse_.at(position(edge, s), near(piece, s));
+    return along_u ? place.u : place.v;
+  };
+  for (std::size_t k = 0; k + 1 < piece.samples.size(); ++k) {
+    const TraceSample &a = piece.samples[k], &b = piece.samples[k + 1];
+    const double x = along_u ? a.place.u : a.place.v, y = along_u ? b.place.u : b.place.v;
+    const double step = arcs->step(), first = std::ceil((std::min(x, y) - arcs->from()) / step);
+    for (double n = first; arcs->from() + n * step < std::max(x, y); ++n) {
+      const double goal = arcs->from() + n * step;
+      double low = a.s, high = b.s;
+      for (int half = 0; half < 50; ++half) {
+        const double middle = 0.5 * (low + high);
+        ((value(middle) < goal) == (x < y) ? low : high) = middle;
+      }
+      out.push_back(0.5 * (low + high));
+    }
+  }
+  return out;
+}
+
+/// A curve along one parameter, on which the other one is constant.
+Result<Curve> TrimCurveMaker::straight(const EdgeTrace& piece, const Curve& edge, bool along_u, double constant,
+                                       Coedge& coedge) const {
+  const Interval d = edge.domain();
+  const double a = our(along_u, along_u ? piece.first().u : piece.first().v);
+  const double b = our(along_u, along_u ? piece.last().u : piece.last().v);
+  const double fixed = our(!along_u, constant);
+  const auto at = [&](double t) { return along_u ? Vec3{t, fixed, 0} : Vec3{fixed, t, 0}; };
+  MonotoneFunction f{d, {}, crossings(piece, edge, along_u)};
+  f.at = [&, this](double s) {
+    const ParameterPoint place = inverse_.at(position(edge, s), near(piece, s));
+    const double t = our(along_u, along_u ? place.u : place.v);
+    return std::clamp(d.from + (d.to - d.from) * (t - a) / (b - a), d.from, d.to);
+  };
+  for (const double knot : edge.knots())
+    if (knot > d.from && knot < d.to) f.breaks.push_back(knot);
+  settle_breaks(f);
+  state_parameter(f, d, coedge);
+  return straight_curve(at(a), at(b), d);
+}
+
+Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, const double* constant_u,
+                                     const double* constant_v) const {
+  const Interval d = edge.domain();
+  const auto parameter = [&](double t) { return piece.reversed ? d.from + d.to - t : t; };
+  double speed_u = 0, speed_v = 0;
+  for (const TraceSample& sample : piece.samples) {
+    const ParameterPoint speeds = inverse_.speeds(sample.place);
+    speed_u = std::max(speed_u, speeds.u), speed_v = std::max(speed_v, speeds.v);
+  }
+  const auto at = [&](double t, const Vec3&) {
+    const double s = parameter(t);
+    ParameterPoint place = near(piece, s);
+    // At a pole, the trace knows to which parameter the edge tends.
+    const bool at_pole = (piece.starts_at_pole && t == d.from) || (piece.ends_at_pole && t == d.to);
+    if (!at_pole) place = inverse_.at(position(edge, s), place);
+    if (constant_u) place.u = *constant_u;
+    if (constant_v) place.v = *constant_v;
+    const ParameterPoint out = ours(place);
+    return Vec3{out.u, out.v, 0};
+  };
+  const auto is_near = [&](const Vec3& a, const Vec3& b) {
+    return std::abs(a.x - b.x) * speed_u + std::abs(a.y - b.y) * speed_v <= tolerance_;
+  };
+  std::vector<double> breaks{d.from, d.to};
+  for (const double knot : edge.knots())
+    if (knot > d.from && knot < d.to) breaks.push_back(parameter(knot));
+  for (const bool along_u : {true, false})
+    for (const double s : crossings(piece, edge, along_u)) breaks.push_back(parameter(s));
+  std::ranges::sort(breaks);
+  const double tiny = 1e-9 * (d.to - d.from);
+  std::vector<double> apart{d.from};
+  for (const double t : breaks)
+    if (t - apart.back() > tiny && d.to - t > tiny) apart.push_back(t);
+  apart.push_back(d.to);
+  LobattoFit fit;
+  fit.follow(at, is_near, apart);
+  return std::move(fit).curve();
+}
+
+Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge) const {
+  if (edge == nullptr) {
+    const ParameterPoint a = ours(piece.first()), b = ours(piece.last());
+    return straight_curve({a.u, a.v, 0}, {b.u, b.v, 0}, {0, 1});
+  }
+  const Curve& curve = *edge->curve;
+  if (const Frame* const frame = inverse_.plane()) return on_plane(piece, curve, *frame);
+  double constant = 0;
+  const bool along_v = is_constant(piece, true, constant);
+  if (!along_v && !is_constant(piece, false, constant)) return fitted(piece, curve, nullptr, nullptr);
+  if (is_line_or_conic(curve)) return straight(piece, curve, !along_v, constant, coedge);
+  return fitted(piece, curve, along_v ? &constant : nullptr, along_v ? nullptr : &constant);
+}
+
+Status TrimCurveMaker::append(const EdgeTrace& piece, const BrepEdge* edge, TrimLoop& loop) const {
+  Coedge coedge{piece.edge, piece.reversed, {}};
+  Result<Curve> made = curve_of(piece, edge, coedge);
+  if (!made) return made.status();
+  loop.curves.push_back(*std::move(made));
+  loop.coedges.push_back(std::move(coedge));
+  return {};
+}
+
+}}  // namespace tessera::abi_0_1
