@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "io/exact/spline_jets.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 
@@ -25,11 +26,6 @@ inline std::vector<double> sample_parameters(const Curve& curve, int samples_per
   }
   return out;
 }
-
-/// A point of a curve, and its derivative.
-struct CurvePlace {
-  Vec3 point, slope;
-};
 
 /// Goes from a parameter to where the distance from p has a local minimum within `range`, by steps of Gauss and Newton
 /// that are halved until the distance falls. Ends after 40 steps.

@@ -47,9 +47,10 @@ class SplineFeet {
  public:
   SplineFeet(const Curve& curve, double tolerance)
       : curve_(curve),
+        at_(curve),
         tolerance_(tolerance),
-        first_(position(curve, curve.domain().from)),
-        last_(position(curve, curve.domain().to)) {}
+        first_(at_.point(curve.domain().from)),
+        last_(at_.point(curve.domain().to)) {}
 
   bool is_closed() const { return length(first_ - last_) <= tolerance_; }
   double start(const Vec3& p) { return near(p, first_) ? curve_.domain().from : foot(p); }
@@ -60,18 +61,15 @@ class SplineFeet {
   double foot(const Vec3& p) {
     if (parameters_.empty()) {
       parameters_ = sample_parameters(curve_, 2 + 2 * curve_.degree());
-      for (const double t : parameters_) points_.push_back(position(curve_, t));
+      for (const double t : parameters_) points_.push_back(at_.point(t));
     }
-    const auto at = [&](double t) {
-      const CurveJet jet = evaluate_jet(curve_, t);
-      return CurvePlace{jet.position, jet.first};
-    };
     const Interval d = curve_.domain();
-    const double t = nearest_foot(at, p, d, parameters_, points_), tiny = 1e-9 * (d.to - d.from);
+    const double t = nearest_foot(at_, p, d, parameters_, points_), tiny = 1e-9 * (d.to - d.from);
     return t - d.from < tiny ? d.from : d.to - t < tiny ? d.to : t;
   }
 
   const Curve& curve_;
+  FastCurve at_;
   double tolerance_;
   Vec3 first_, last_;
   std::vector<double> parameters_;
@@ -129,7 +127,7 @@ Result<StepEdgeCurve> StepCurves::round_edge(StepEntity& entity, std::array<Vec3
   Interval range{*a, *b};
   const double rounding = 1e-12;
   if (range.to <= range.from + rounding) range.to += round_turn;
-  if (length(ends[1] - ends[0]) <= tolerance) range.to = range.from + round_turn;
+  if (length(ends[1] - ends[0]) <= 1e-3 * tolerance) range.to = range.from + round_turn;
   range.to = std::min(range.to, range.from + round_turn);
   const Result<SplineLine> line = conic(entity, range);
   if (!line) return line.status();
@@ -151,7 +149,7 @@ Result<StepEdgeCurve> StepCurves::spline_edge(StepEntity& entity, std::array<Vec
   };
   SplineFeet feet(*whole, tolerance);
   const Interval d = whole->domain();
-  if (length(ends[1] - ends[0]) <= tolerance && feet.is_closed()) {
+  if (length(ends[1] - ends[0]) <= 1e-3 * tolerance && feet.is_closed()) {
     const double seam = feet.start(ends[0]);
     if (seam == d.from || seam == d.to || !is_clamped(*line)) return made(*whole, !agrees);
     return made(curve_of(twice(*line), Interval{seam, seam + (d.to - d.from)}), !agrees);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/exact/transposed.h"
+#include "io/step/step_outline.h"
 #include "io/step/step_face_box.h"
 #include "io/step/step_inverse.h"
 #include "io/step/step_trace.h"
@@ -27,11 +28,17 @@ Result<Box3> extent_of_face(const StepFace& face, const StepFaceContext& context
   return out;
 }
 
+StepOwnEdge pole_edge(std::uint32_t vertex, const StepOwnEdge::Use& use) {
+  StepOwnEdge out{{}, {use}};
+  out.edge.start = out.edge.end = vertex;
+  out.edge.degenerate = true;
+  return out;
+}
+
 /// A surface that is a face by itself.
-Result<StepFaceResult> whole_surface(const StepFace& face, const StepFaceContext& context) {
-  Result<FaceSurface> made = context.geometry.surface(face.surface);
-  if (!made) return made.status();
-  StepFaceResult out{std::move(made->surface), {}, true, {}};
+Result<StepFaceResult> whole_surface(const StepFace& face, BSplineSurface surface, double tolerance) {
+  StepFaceResult out{std::move(surface), {}, true, {}};
+  if (Status status = add_outline(out, tolerance); !status.ok()) return status;
   if (!face.agrees)
     if (Status status = transpose(out.surface, out.loops); !status.ok()) return status;
   return out;
@@ -40,7 +47,11 @@ Result<StepFaceResult> whole_surface(const StepFace& face, const StepFaceContext
 }  // namespace
 
 Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& context) {
-  if (face.bounds.empty()) return whole_surface(face, context);
+  if (face.bounds.empty()) {
+    Result<FaceSurface> made = context.geometry.surface(face.surface);
+    if (!made) return made.status();
+    return whole_surface(face, std::move(made->surface), context.tolerance);
+  }
   const Result<Box3> extent = extent_of_face(face, context);
   if (!extent) return extent.status();
   const Result<std::unique_ptr<SurfaceInverse>> inverse =
@@ -58,6 +69,7 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
   if (!box) return box.status();
   Result<FaceSurface> surface = (*inverse)->surface(box->domain);
   if (!surface) return surface.status();
+  if (loops.empty()) return whole_surface(face, std::move(surface->surface), context.tolerance);
   StepFaceResult out{std::move(surface->surface), {}, false, {}};
   const double fit_tolerance = 1e-3 * context.tolerance;
   const TrimCurveMaker maker(**inverse, surface->parameters, *box, fit_tolerance);
@@ -66,7 +78,7 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
     TrimLoop& made = out.loops.emplace_back();
     made.hole = is_hole || (has_outer && !loop.is_outer);
     for (const EdgeTrace& piece : loop.pieces) {
-      if (piece.edge == no_id) out.poles.push_back({out.loops.size() - 1, made.curves.size(), piece.vertex});
+      if (piece.edge == no_id) out.own_edges.push_back(pole_edge(piece.vertex, {out.loops.size() - 1, made.curves.size()}));
       const BrepEdge* const edge = piece.edge == no_id ? nullptr : &context.edges[piece.edge];
       if (Status status = maker.append(piece, edge, made); !status.ok()) return status;
     }

@@ -24,17 +24,20 @@ struct StepFaceContext {
   double tolerance;  ///< points that are nearer to each other are one; > 0
 };
 
-/// A line along a pole, which needs an edge of its own.
-struct StepPole {
-  std::size_t loop = 0, curve = 0;
-  std::uint32_t vertex = no_id;
+/// An edge that the file does not have: along a pole, or along a side of a surface that is a face by itself.
+struct StepOwnEdge {
+  struct Use {
+    std::size_t loop = 0, curve = 0;
+  };
+  BrepEdge edge;
+  std::vector<Use> uses;
 };
 
 struct StepFaceResult {
   BSplineSurface surface;
   std::vector<TrimLoop> loops;
   bool whole = false;  ///< one loop runs along all sides of the domain, and trims nothing
-  std::vector<StepPole> poles;
+  std::vector<StepOwnEdge> own_edges;
 };
 
 /// Converts a face. Errors: those of the geometry; unsupported (no bounds, no extent, an edge without a curve).

@@ -53,7 +53,9 @@ class ElementaryInverse : public SurfaceInverse {
       case StepElementaryKind::torus:
         break;
     }
-    const bool is_inner = of_.minor > of_.radius && of_.whole.v0 > 0;  // of a degenerate torus
+    // A torus that meets itself has two sheets; a point lies on one of them.
+    const auto off = [&](double around) { return std::abs(std::hypot(around - of_.radius, local.z) - of_.minor); };
+    const bool is_inner = of_.minor > of_.radius && off(-ring) < off(ring);
     if (is_inner) local = {-local.x, -local.y, local.z};
     return {angle_about_z(local, near.u),
             angle_near(std::atan2(local.z, (is_inner ? -ring : ring) - of_.radius), near.v)};
@@ -122,7 +124,7 @@ SplineLine profile_part(const SplineLine& line, const Interval& range) {
 /// Curves that are swept. The profile is searched in a plane in which the sweep is a point.
 class SweptInverse : public SurfaceInverse {
  public:
-  SweptInverse(StepSweep sweep, Curve curve) : sweep_(std::move(sweep)), curve_(std::move(curve)) {
+  SweptInverse(StepSweep sweep, Curve curve) : sweep_(std::move(sweep)), curve_(std::move(curve)), fast_(curve_) {
     parameters_ = sample_parameters(curve_, 2 + 2 * curve_.degree());
     for (const double t : parameters_) points_.push_back(flat(t).point);
     const Interval d = curve_.domain();
@@ -140,16 +142,16 @@ class SweptInverse : public SurfaceInverse {
   ParameterPoint find(const Vec3& p) const override { return places(p, nullptr); }
 
   Vec3 point(const ParameterPoint& place) const override {
-    if (!sweep_.is_turned) return position(curve_, wrapped(place.u)) + place.v * sweep_.direction;
-    const Vec3 p = position(curve_, wrapped(place.v));
+    if (!sweep_.is_turned) return fast_.point(wrapped(place.u)) + place.v * sweep_.direction;
+    const Vec3 p = fast_.point(wrapped(place.v));
     const double c = std::cos(place.u), s = std::sin(place.u);
     return sweep_.frame.at({c * p.x - s * p.y, s * p.x + c * p.y, p.z});
   }
 
   ParameterPoint speeds(const ParameterPoint& place) const override {
-    const CurveJet jet = evaluate_jet(curve_, wrapped(sweep_.is_turned ? place.v : place.u));
-    if (!sweep_.is_turned) return {length(jet.first), 1};
-    return {std::hypot(jet.position.x, jet.position.y), length(jet.first)};
+    const CurvePlace jet = fast_(wrapped(sweep_.is_turned ? place.v : place.u));
+    if (!sweep_.is_turned) return {length(jet.slope), 1};
+    return {std::hypot(jet.point.x, jet.point.y), length(jet.slope)};
   }
 
   Result<FaceSurface> surface(const Domain& box) const override {
@@ -173,15 +175,15 @@ class SweptInverse : public SurfaceInverse {
 
   /// A point of the profile in the plane: (distance from the axis, 0, height), or what is across the direction.
   CurvePlace flat(double t) const {
-    const CurveJet jet = evaluate_jet(curve_, t);
+    const CurvePlace jet = fast_(t);
     if (!sweep_.is_turned) {
       const Vec3& d = sweep_.direction;
-      return {jet.position - dot(jet.position, d) * d, jet.first - dot(jet.first, d) * d};
+      return {jet.point - dot(jet.point, d) * d, jet.slope - dot(jet.slope, d) * d};
     }
-    const double ring = std::hypot(jet.position.x, jet.position.y);
-    const double slope = ring > 0 ? (jet.position.x * jet.first.x + jet.position.y * jet.first.y) / ring
-                                  : std::hypot(jet.first.x, jet.first.y);
-    return {{ring, 0, jet.position.z}, {slope, 0, jet.first.z}};
+    const double ring = std::hypot(jet.point.x, jet.point.y);
+    const double slope = ring > 0 ? (jet.point.x * jet.slope.x + jet.point.y * jet.slope.y) / ring
+                                  : std::hypot(jet.slope.x, jet.slope.y);
+    return {{ring, 0, jet.point.z}, {slope, 0, jet.slope.z}};
   }
 
   ParameterPoint places(const Vec3& p, const ParameterPoint* near) const {
@@ -189,7 +191,7 @@ class SweptInverse : public SurfaceInverse {
     const Vec3 goal = sweep_.is_turned ? Vec3{std::hypot(local.x, local.y), 0, local.z}
                                        : p - dot(p, sweep_.direction) * sweep_.direction;
     const double t = parameter(goal, near ? std::optional(sweep_.is_turned ? near->v : near->u) : std::nullopt);
-    const Vec3 there = position(curve_, wrapped(t));
+    const Vec3 there = fast_.point(wrapped(t));
     if (!sweep_.is_turned) return {t, dot(p - there, sweep_.direction)};
     const double near_u = near ? near->u : 0;
     if (local.x == 0 && local.y == 0) return {near_u, t};
@@ -218,6 +220,7 @@ class SweptInverse : public SurfaceInverse {
 
   StepSweep sweep_;
   Curve curve_;
+  FastCurve fast_;
   std::vector<double> parameters_;
   std::vector<Vec3> points_;  ///< in the plane
 

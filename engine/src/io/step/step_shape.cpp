@@ -14,6 +14,7 @@ namespace {
 
 /// Points that are nearer to each other are one: what the file states, within reason for a part of this size.
 double tolerance_of(double uncertainty, const Box3& box) {
+  if (box.empty()) return uncertainty > 0 ? uncertainty : 1e-7;
   const double size = box.diagonal();
   const double least = std::max(1e-12 * std::max(max_abs(box.lower), max_abs(box.upper)), 1e-9 * size);
   const double stated = uncertainty > 0 ? uncertainty : 1e-6 * size;
@@ -146,11 +147,11 @@ class ShapeMaker {
       return faults_.left_out.push_back(words(k) + " is left out: " + face.status.message());
     }
     StepFaceResult& made = *results_[k];
-    for (const StepPole& pole : made.poles) {
-      made.loops[pole.loop].coedges[pole.curve].edge = static_cast<std::uint32_t>(shape_.edges.size());
-      BrepEdge& edge = shape_.edges.emplace_back();
-      edge.start = edge.end = pole.vertex;
-      edge.tolerance = tolerance_, edge.degenerate = true;
+    for (StepOwnEdge& own : made.own_edges) {
+      for (const StepOwnEdge::Use& use : own.uses)
+        made.loops[use.loop].coedges[use.curve].edge = static_cast<std::uint32_t>(shape_.edges.size());
+      own.edge.tolerance = tolerance_;
+      shape_.edges.push_back(std::move(own.edge));
     }
     for (TrimLoop& loop : made.loops)
       if (std::ranges::any_of(loop.coedges, [](const Coedge& coedge) { return coedge.edge == no_id; })) {

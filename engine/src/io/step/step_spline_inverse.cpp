@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/exact/spline_jets.h"
 #include "io/step/step_inverse.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -35,7 +36,7 @@ std::vector<double> grid_parameters_of(std::span<const double> breaks, std::size
 
 class SplineInverse : public SurfaceInverse {
  public:
-  SplineInverse(BSplineSurface surface, double tolerance) : surface_(std::move(surface)) {
+  SplineInverse(BSplineSurface surface, double tolerance) : surface_(std::move(surface)), at_(surface_) {
     whole_ = surface_.domain();
     const Domain& d = whole_;
     if (closes(tolerance, [&](double x) { return std::array{Vec3{d.u0, d.v_at(x), 0}, Vec3{d.u1, d.v_at(x), 0}}; }))
@@ -52,9 +53,9 @@ class SplineInverse : public SurfaceInverse {
   }
   ParameterPoint find(const Vec3& p) const override { return found(p).place; }
 
-  Vec3 point(const ParameterPoint& place) const override { return jet(place).position; }
+  Vec3 point(const ParameterPoint& place) const override { return jet(place).point; }
   ParameterPoint speeds(const ParameterPoint& place) const override {
-    const SurfaceJet there = jet(place);
+    const SurfacePlace there = jet(place);
     return {length(there.du), length(there.dv)};
   }
 
@@ -81,19 +82,19 @@ class SplineInverse : public SurfaceInverse {
   template <class Pair>
   bool closes(double tolerance, const Pair& pair) const {
     double extent = 0;
-    const Vec3 first = evaluate_jet(surface_, pair(0)[0].x, pair(0)[0].y).position;
+    const Vec3 first = at_(pair(0)[0].x, pair(0)[0].y).point;
     for (int k = 0; k <= 6; ++k) {
       const auto [a, b] = pair(k / 6.0);
-      const Vec3 p = evaluate_jet(surface_, a.x, a.y).position;
-      if (!(length(p - evaluate_jet(surface_, b.x, b.y).position) <= tolerance)) return false;
+      const Vec3 p = at_(a.x, a.y).point;
+      if (!(length(p - at_(b.x, b.y).point) <= tolerance)) return false;
       extent = std::max(extent, length(p - first));
     }
     return extent > tolerance;
   }
 
-  SurfaceJet jet(const ParameterPoint& place) const {
+  SurfacePlace jet(const ParameterPoint& place) const {
     const ParameterPoint there = inside(place);
-    return evaluate_jet(surface_, there.u, there.v);
+    return at_(there.u, there.v);
   }
   static double wrapped(double t, double from, double to, double period) {
     if (period > 0 && (t < from || t > to)) t -= period * std::floor((t - from) / period);
@@ -110,8 +111,8 @@ class SplineInverse : public SurfaceInverse {
   }
 
   /// The step of Gauss and Newton towards p; along one parameter where the other one is held, or undefined.
-  ParameterPoint step(const SurfaceJet& there, const Vec3& p, bool holds_u, bool holds_v) const {
-    const Vec3 gap = p - there.position;
+  ParameterPoint step(const SurfacePlace& there, const Vec3& p, bool holds_u, bool holds_v) const {
+    const Vec3 gap = p - there.point;
     const double a = dot(there.du, there.du), b = dot(there.du, there.dv), c = dot(there.dv, there.dv);
     const double x = dot(gap, there.du), y = dot(gap, there.dv), determinant = a * c - b * b;
     if (!holds_u && !holds_v && determinant > 1e-12 * a * c)
@@ -125,8 +126,8 @@ class SplineInverse : public SurfaceInverse {
   /// Goes from a place to a local minimum of the distance. Ends after 30 steps.
   Foot refined(const Vec3& p, const ParameterPoint& from) const {
     Foot foot{from, 0};
-    SurfaceJet there = evaluate_jet(surface_, from.u, from.v);
-    foot.distance = length(there.position - p);
+    SurfacePlace there = at_(from.u, from.v);
+    foot.distance = length(there.point - p);
     const Domain& d = whole_;
     for (int k = 0; k < 30; ++k) {
       ParameterPoint move = step(there, p, false, false);
@@ -141,13 +142,13 @@ class SplineInverse : public SurfaceInverse {
       for (int half = 0; half < 6 && !better; ++half, share *= 0.5) {
         const ParameterPoint next = inside({foot.place.u + share * move.u, foot.place.v + share * move.v});
         if (next == foot.place) return foot;
-        const SurfaceJet jet_there = evaluate_jet(surface_, next.u, next.v);
-        const double distance = length(jet_there.position - p);
+        const SurfacePlace jet_there = at_(next.u, next.v);
+        const double distance = length(jet_there.point - p);
         if (!(distance < foot.distance)) continue;
         better = true, foot = {next, distance}, there = jet_there;
       }
       const double rest = std::max(std::abs(move.u) / (d.u1 - d.u0), std::abs(move.v) / (d.v1 - d.v0));
-      if (!better || rest <= 1e-13) break;
+      if (!better || share * rest <= 1e-10) break;  // the next step is smaller by orders
     }
     return foot;
   }
@@ -180,10 +181,11 @@ class SplineInverse : public SurfaceInverse {
     grid_v_ = grid_parameters_of(distinct_knots(surface_.knots_v(), d.v0, d.v1),
                                  static_cast<std::size_t>(surface_.degree_v()), most);
     for (const double u : grid_u_)
-      for (const double v : grid_v_) samples_.push_back(evaluate_jet(surface_, u, v).position);
+      for (const double v : grid_v_) samples_.push_back(at_(u, v).point);
   }
 
   BSplineSurface surface_;
+  FastSurface at_;
   mutable std::vector<double> grid_u_, grid_v_;  ///< made when they are needed; an inverse serves one thread
   mutable std::vector<Vec3> samples_;
 };

@@ -29,10 +29,10 @@ std::vector<double> trace_parameters(const Curve& curve) {
 }  // namespace
 
 /// Appends a place, and others before it where the parameters move far.
-void EdgeTracer::follow(const Curve& curve, double to, std::vector<TraceSample>& samples, int depth) const {
+void EdgeTracer::follow(const FastCurve& curve, double to, std::vector<TraceSample>& samples, int depth) const {
   constexpr int max_depth = 8;
   const TraceSample before = samples.back();
-  const ParameterPoint place = inverse_.at(position(curve, to), before.place), period = inverse_.period();
+  const ParameterPoint place = inverse_.at(curve.point(to), before.place), period = inverse_.period();
   const bool is_far = (period.u > 0 && std::abs(place.u - before.place.u) > period.u / 6) ||
                       (period.v > 0 && std::abs(place.v - before.place.v) > period.v / 6);
   if (is_far && depth < max_depth && !is_pole(place) && !is_pole(before.place)) {
@@ -43,16 +43,16 @@ void EdgeTracer::follow(const Curve& curve, double to, std::vector<TraceSample>&
 }
 
 /// Gives an end that lies at a pole the parameter that its edge tends to: the parabola through three places near it.
-void EdgeTracer::settle_pole(const Curve& curve, EdgeTrace& trace, bool at_end) const {
+void EdgeTracer::settle_pole(const FastCurve& curve, EdgeTrace& trace, bool at_end) const {
   TraceSample& end = at_end ? trace.samples.back() : trace.samples.front();
   (at_end ? trace.ends_at_pole : trace.starts_at_pole) = is_pole(end.place);
   if (!is_pole(end.place)) return;
-  const Interval d = curve.domain();
+  const Interval d = curve.curve().domain();
   const double inwards = (end.s == d.from ? 1 : -1) * 1e-3 * (d.to - d.from);
   ParameterPoint near = (at_end ? trace.samples.end()[-2] : trace.samples[1]).place;
   std::array<ParameterPoint, 3> places;
   for (const int k : {2, 1, 0}) {
-    near = inverse_.at(position(curve, end.s + (k + 1) * inwards), near);
+    near = inverse_.at(curve.point(end.s + (k + 1) * inwards), near);
     places[static_cast<std::size_t>(k)] = near;
   }
   const auto limit = [](double a, double b, double c) { return 3 * a - 3 * b + c; };
@@ -61,16 +61,16 @@ void EdgeTracer::settle_pole(const Curve& curve, EdgeTrace& trace, bool at_end) 
 }
 
 EdgeTrace EdgeTracer::trace(std::uint32_t edge, bool reversed, const std::optional<ParameterPoint>& near) const {
-  const Curve& curve = *edges_[edge].curve;
+  const FastCurve curve(*edges_[edge].curve);
   EdgeTrace out{edge, no_id, reversed, {}, false, false};
-  std::vector<double> places = trace_parameters(curve);
+  std::vector<double> places = trace_parameters(curve.curve());
   if (reversed) std::ranges::reverse(places);
   std::size_t start = 0;
   std::optional<ParameterPoint> first;
-  if (near) first = inverse_.at(position(curve, places[0]), *near);
+  if (near) first = inverse_.at(curve.point(places[0]), *near);
   if (!first || is_pole(*first)) {
     start = places.size() / 2;
-    const Vec3 middle = position(curve, places[start]);
+    const Vec3 middle = curve.point(places[start]);
     first = near ? inverse_.at(middle, *near) : inverse_.find(middle);
   }
   out.samples.push_back({places[start], *first});

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "io/exact/spline_jets.h"
 #include "io/step/step_inverse.h"
 #include "io/step/step_topology.h"
 #include "tessera/brep.h"
@@ -51,8 +52,8 @@ class EdgeTracer {
 
  private:
   EdgeTrace trace(std::uint32_t edge, bool reversed, const std::optional<ParameterPoint>& near) const;
-  void follow(const Curve& curve, double to, std::vector<TraceSample>& samples, int depth) const;
-  void settle_pole(const Curve& curve, EdgeTrace& trace, bool at_end) const;
+  void follow(const FastCurve& curve, double to, std::vector<TraceSample>& samples, int depth) const;
+  void settle_pole(const FastCurve& curve, EdgeTrace& trace, bool at_end) const;
   void connect(const EdgeTrace& before, const EdgeTrace& after, bool is_closing, std::vector<EdgeTrace>& out) const;
   bool is_pole(const ParameterPoint& place) const { return inverse_.is_pole_u(place) || inverse_.is_pole_v(place); }
 

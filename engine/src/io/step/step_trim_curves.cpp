@@ -6,6 +6,7 @@
 
 #include "convert/fit/lobatto_fit.h"
 #include "io/exact/coedge_parameter.h"
+#include "io/exact/spline_jets.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -78,6 +79,17 @@ bool TrimCurveMaker::is_constant(const EdgeTrace& piece, bool along_u, double& v
   return true;
 }
 
+/// Whether a parameter is a linear function of the edge's, up to the tolerance.
+bool TrimCurveMaker::is_linear(const EdgeTrace& piece, bool along_u) const {
+  if ((along_u ? parameters_.u : parameters_.v).has_value()) return false;
+  const TraceSample &a = piece.samples.front(), &b = piece.samples.back();
+  const auto of = [&](const ParameterPoint& p) { return along_u ? p.u : p.v; };
+  return std::ranges::all_of(piece.samples, [&](const TraceSample& sample) {
+    const double even = of(a.place) + (sample.s - a.s) / (b.s - a.s) * (of(b.place) - of(a.place));
+    return std::abs(of(sample.place) - even) * of(inverse_.speeds(sample.place)) <= tolerance_;
+  });
+}
+
 Result<Curve> TrimCurveMaker::on_plane(const EdgeTrace& piece, const Curve& edge, const Frame& frame) const {
   return mapped_curve(edge, piece.reversed, [&](const Vec3& p) {
     const Vec3 local = frame.local(p);
@@ -90,8 +102,9 @@ std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curv
   std::vector<double> out;
   const std::optional<Arcs>& arcs = along_u ? parameters_.u : parameters_.v;
   if (!arcs) return out;
+  const FastCurve at_edge(edge);
   const auto value = [&](double s) {
-    const ParameterPoint place = inverse_.at(position(edge, s), near(piece, s));
+    const ParameterPoint place = inverse_.at(at_edge.point(s), near(piece, s));
     return along_u ? place.u : place.v;
   };
   for (std::size_t k = 0; k + 1 < piece.samples.size(); ++k) {
@@ -114,14 +127,16 @@ std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curv
 /// A curve along one parameter, on which the other one is constant.
 Result<Curve> TrimCurveMaker::straight(const EdgeTrace& piece, const Curve& edge, bool along_u, double constant,
                                        Coedge& coedge) const {
+  const FastCurve at_edge(edge);
   const Interval d = edge.domain();
   const double a = our(along_u, along_u ? piece.first().u : piece.first().v);
   const double b = our(along_u, along_u ? piece.last().u : piece.last().v);
   const double fixed = our(!along_u, constant);
   const auto at = [&](double t) { return along_u ? Vec3{t, fixed, 0} : Vec3{fixed, t, 0}; };
+  if (is_linear(piece, along_u)) return straight_curve(at(a), at(b), d);
   MonotoneFunction f{d, {}, crossings(piece, edge, along_u)};
   f.at = [&, this](double s) {
-    const ParameterPoint place = inverse_.at(position(edge, s), near(piece, s));
+    const ParameterPoint place = inverse_.at(at_edge.point(s), near(piece, s));
     const double t = our(along_u, along_u ? place.u : place.v);
     return std::clamp(d.from + (d.to - d.from) * (t - a) / (b - a), d.from, d.to);
   };
@@ -134,6 +149,7 @@ Result<Curve> TrimCurveMaker::straight(const EdgeTrace& piece, const Curve& edge
 
 Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, const double* constant_u,
                                      const double* constant_v) const {
+  const FastCurve at_edge(edge);
   const Interval d = edge.domain();
   const auto parameter = [&](double t) { return piece.reversed ? d.from + d.to - t : t; };
   double speed_u = 0, speed_v = 0;
@@ -146,7 +162,7 @@ Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, 
     ParameterPoint place = near(piece, s);
     // At a pole, the trace knows to which parameter the edge tends.
     const bool at_pole = (piece.starts_at_pole && t == d.from) || (piece.ends_at_pole && t == d.to);
-    if (!at_pole) place = inverse_.at(position(edge, s), place);
+    if (!at_pole) place = inverse_.at(at_edge.point(s), place);
     if (constant_u) place.u = *constant_u;
     if (constant_v) place.v = *constant_v;
     const ParameterPoint out = ours(place);
@@ -181,7 +197,9 @@ Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* e
   double constant = 0;
   const bool along_v = is_constant(piece, true, constant);
   if (!along_v && !is_constant(piece, false, constant)) return fitted(piece, curve, nullptr, nullptr);
-  if (is_line_or_conic(curve)) return straight(piece, curve, !along_v, constant, coedge);
+  const bool has_arcs = (along_v ? parameters_.v : parameters_.u).has_value();
+  if ((has_arcs && is_line_or_conic(curve)) || is_linear(piece, !along_v))
+    return straight(piece, curve, !along_v, constant, coedge);
   return fitted(piece, curve, along_v ? &constant : nullptr, along_v ? nullptr : &constant);
 }
 

@@ -35,6 +35,7 @@ class TrimCurveMaker {
   double our(bool along_u, double theirs) const;
   ParameterPoint near(const EdgeTrace& piece, double s) const;
   bool is_constant(const EdgeTrace& piece, bool along_u, double& value) const;
+  bool is_linear(const EdgeTrace& piece, bool along_u) const;
   Result<Curve> on_plane(const EdgeTrace& piece, const Curve& edge, const Frame& frame) const;
   Result<Curve> straight(const EdgeTrace& piece, const Curve& edge, bool along_u, double constant,
                          Coedge& coedge) const;
