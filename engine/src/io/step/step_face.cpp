@@ -14,8 +14,8 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// The box of a face's edges and vertices.
-Result<Box3> extent_of_face(const StepFace& face, const StepFaceContext& context) {
+/// The box of a face's edges and vertices, and the edges' curves.
+Result<Box3> extent_of_face(const StepFace& face, const StepFaceContext& context, std::vector<const Curve*>& curves) {
   Box3 out;
   for (const StepBound& bound : face.bounds) {
     if (bound.vertex != no_id) out.extend(context.vertices[bound.vertex].position);
@@ -23,6 +23,7 @@ Result<Box3> extent_of_face(const StepFace& face, const StepFaceContext& context
       const std::optional<Curve>& curve = context.edges[use.edge].curve;
       if (!curve) return Status(StatusCode::unsupported, "an edge of it cannot be read");
       for (const Vec3& p : curve->points()) out.extend(p);
+      curves.push_back(&*curve);
     }
   }
   return out;
@@ -37,7 +38,7 @@ StepOwnEdge pole_edge(std::uint32_t vertex, const StepOwnEdge::Use& use) {
 
 /// A surface that is a face by itself.
 Result<StepFaceResult> whole_surface(const StepFace& face, BSplineSurface surface, double tolerance) {
-  StepFaceResult out{std::move(surface), {}, true, {}};
+  StepFaceResult out{std::move(surface), {}, true, {}, 0};
   if (Status status = add_outline(out, tolerance); !status.ok()) return status;
   if (!face.agrees)
     if (Status status = transpose(out.surface, out.loops); !status.ok()) return status;
@@ -52,10 +53,11 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
     if (!made) return made.status();
     return whole_surface(face, std::move(made->surface), context.tolerance);
   }
-  const Result<Box3> extent = extent_of_face(face, context);
+  std::vector<const Curve*> curves;
+  const Result<Box3> extent = extent_of_face(face, context, curves);
   if (!extent) return extent.status();
   const Result<std::unique_ptr<SurfaceInverse>> inverse =
-      SurfaceInverse::make(context.geometry, face.surface, *extent, context.tolerance);
+      SurfaceInverse::make(context.geometry, face.surface, *extent, context.tolerance, curves);
   if (!inverse) return inverse.status();
   const EdgeTracer tracer(**inverse, context.edges, face.agrees);
   std::vector<LoopTrace> loops;
@@ -70,7 +72,7 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
   Result<FaceSurface> surface = (*inverse)->surface(box->domain);
   if (!surface) return surface.status();
   if (loops.empty()) return whole_surface(face, std::move(surface->surface), context.tolerance);
-  StepFaceResult out{std::move(surface->surface), {}, false, {}};
+  StepFaceResult out{std::move(surface->surface), {}, false, {}, (*inverse)->fit_error()};
   const double fit_tolerance = 1e-3 * context.tolerance;
   const TrimCurveMaker maker(**inverse, surface->parameters, *box, fit_tolerance);
   const bool has_outer = std::ranges::any_of(loops, [](const LoopTrace& loop) { return loop.is_outer; });

@@ -37,6 +37,12 @@ struct StepSweep {
   Vec3 direction;      ///< of an extrusion; of unit length
 };
 
+/// A surface at a distance from another, along its normal.
+struct StepOffset {
+  std::uint64_t basis = 0;  ///< instance of the other surface
+  double distance = 0;      ///< in the model's unit
+};
+
 /// Converts the geometry of a file. Threads: any number of calls at once. Errors: those of StepCurves and
 /// BSplineSurface.
 class StepGeometry : public StepCurves {
@@ -51,6 +57,8 @@ class StepGeometry : public StepCurves {
   ///
   /// - `extent`: the box of points of interest, which bounds profiles without ends.
   Result<std::optional<StepSweep>> sweep(std::uint64_t number, const Box3& extent) const;
+  /// Reads an offset surface; nothing for other kinds.
+  Result<std::optional<StepOffset>> offset(std::uint64_t number) const;
   /// Converts a surface over a rectangle of its parameters. Without one: all of the surface, if that is bounded.
   Result<FaceSurface> surface(std::uint64_t number, const std::optional<Domain>& box = {}) const;
 

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "io/exact/curve_foot.h"
+#include "io/step/step_offset.h"
+#include "io/step/step_sphere_axis.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -242,14 +244,53 @@ bool SurfaceInverse::is_pole_v(const ParameterPoint& place) const {
 
 std::unique_ptr<SurfaceInverse> make_spline_inverse(BSplineSurface surface, double tolerance);
 
+/// Makes the inverse of a surface at a distance from another: exact where that is elementary, else fitted as far as the
+/// points reach.
+Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make_offset(const StepGeometry& geometry,
+                                                                    const StepOffset& offset, const Box3& extent,
+                                                                    double tolerance) {
+  const Result<std::optional<StepElementary>> simple = geometry.elementary(offset.basis);
+  if (!simple) return simple.status();
+  if (*simple) {
+    const Result<StepElementary> moved = offset_by(**simple, offset.distance);
+    if (!moved) return moved.status();
+    std::unique_ptr<SurfaceInverse> out = std::make_unique<ElementaryInverse>(*moved);
+    out->tolerance_ = tolerance;
+    return out;
+  }
+  Box3 wider = extent;
+  const double far = std::abs(offset.distance);
+  if (!extent.empty()) wider.extend(extent.lower - Vec3{far, far, far}), wider.extend(extent.upper + Vec3{far, far, far});
+  const Result<std::unique_ptr<SurfaceInverse>> basis = make(geometry, offset.basis, wider, tolerance);
+  if (!basis) return basis.status();
+  Domain box = (*basis)->whole();
+  if (!std::isfinite(box.v1 - box.v0)) {  // an extrusion
+    const double middle = (*basis)->find(wider.centre()).v;
+    box.v0 = middle - wider.diagonal(), box.v1 = middle + wider.diagonal();
+  }
+  const Result<FaceSurface> surface = (*basis)->surface(box);
+  if (!surface) return surface.status();
+  Result<FaceSurface> fit = offset_by(surface->surface, offset.distance, 0.1 * tolerance);
+  if (!fit) return fit.status();
+  std::unique_ptr<SurfaceInverse> out = make_spline_inverse(std::move(fit->surface), tolerance);
+  out->tolerance_ = tolerance;
+  out->fit_error_ = fit->fit_error;
+  return out;
+}
+
 Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make(const StepGeometry& geometry, std::uint64_t surface,
-                                                             const Box3& extent, double tolerance) {
+                                                             const Box3& extent, double tolerance,
+                                                             std::span<const Curve* const> borders) {
   surface = geometry.bare_surface(surface);
+  const Result<std::optional<StepOffset>> offset = geometry.offset(surface);
+  if (!offset) return offset.status();
+  if (*offset) return make_offset(geometry, **offset, extent, tolerance);
   const Result<std::optional<StepElementary>> simple = geometry.elementary(surface);
   if (!simple) return simple.status();
   std::unique_ptr<SurfaceInverse> out;
   if (*simple) {
-    out = std::make_unique<ElementaryInverse>(**simple);
+    const bool is_sphere = (*simple)->kind == StepElementaryKind::sphere;
+    out = std::make_unique<ElementaryInverse>(is_sphere ? off_poles(**simple, borders, tolerance) : **simple);
   } else {
     Result<std::optional<StepSweep>> sweep = geometry.sweep(surface, extent);
     if (!sweep) return sweep.status();

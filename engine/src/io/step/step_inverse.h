@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/exact/face_box.h"
@@ -21,11 +22,16 @@ class SurfaceInverse {
   /// Makes the inverse of a surface.
   ///
   /// - `extent`: the box of points of interest.
+  /// - `borders`: curves of the face's edges, for which the surface may choose its axis.
   /// - `tolerance`: points that are nearer to each other are one.
   ///
   /// Errors: those of StepGeometry::surface().
   static Result<std::unique_ptr<SurfaceInverse>> make(const StepGeometry& geometry, std::uint64_t surface,
-                                                      const Box3& extent, double tolerance);
+                                                      const Box3& extent, double tolerance,
+                                                      std::span<const Curve* const> borders = {});
+
+  /// Returns how far the surface is from the file's, where it had to be fitted.
+  double fit_error() const { return fit_error_; }
 
   /// Returns the parameters of the point of the surface that is nearest to p and to the parameters `near`. Where one
   /// parameter is undefined, as at a pole, it is that of `near`.
@@ -58,7 +64,11 @@ class SurfaceInverse {
   Domain whole_;
   ParameterPoint period_;
   bool turns_u_ = false, turns_v_ = false;
-  double tolerance_ = 0;
+  double tolerance_ = 0, fit_error_ = 0;
+
+ private:
+  static Result<std::unique_ptr<SurfaceInverse>> make_offset(const StepGeometry& geometry, const StepOffset& offset,
+                                                             const Box3& extent, double tolerance);
 };
 
 }}  // namespace tessera::abi_0_1

@@ -147,6 +147,7 @@ class ShapeMaker {
       return faults_.left_out.push_back(words(k) + " is left out: " + face.status.message());
     }
     StepFaceResult& made = *results_[k];
+    if (made.fit_error > 0) ++faults_.fitted, faults_.worst_fit = std::max(faults_.worst_fit, made.fit_error);
     for (StepOwnEdge& own : made.own_edges) {
       for (const StepOwnEdge::Use& use : own.uses)
         made.loops[use.loop].coedges[use.curve].edge = static_cast<std::uint32_t>(shape_.edges.size());

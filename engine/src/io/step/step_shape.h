@@ -29,6 +29,8 @@ struct StepShapeInput {
 struct StepShapeFaults {
   std::vector<std::string> left_out;                ///< faces, one sentence each
   std::vector<std::string> changed;                 ///< faces that differ from the file, one sentence each
+  std::size_t fitted = 0;                           ///< surfaces that had to be fitted
+  double worst_fit = 0;                             ///< their largest distance
   StatusCode first_code = StatusCode::parse_error;  ///< of the first face that is left out
 };
 

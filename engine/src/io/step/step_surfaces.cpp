@@ -168,6 +168,17 @@ Result<FaceSurface> StepGeometry::elementary(StepEntity& entity, const std::opti
   return elementary_surface(*made, box);
 }
 
+Result<std::optional<StepOffset>> StepGeometry::offset(std::uint64_t number) const {
+  StepEntity entity(index_, number);
+  if (!entity.is("OFFSET_SURFACE")) return std::optional<StepOffset>();
+  StepOffset out{entity.reference(entity.attribute(1)), units_.length * entity.real(entity.attribute(2))};
+  if (!entity.status().ok()) return entity.status();
+  out.basis = bare_surface(out.basis);
+  if (StepEntity(index_, out.basis).is("OFFSET_SURFACE"))
+    return entity.error("is an offset of an offset surface", StatusCode::unsupported);
+  return std::optional<StepOffset>(out);
+}
+
 Result<std::optional<StepSweep>> StepGeometry::sweep(std::uint64_t number, const Box3& extent) const {
   StepEntity entity(index_, number);
   StepSweep out;
