@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "io_occt/cad_shapes.h"
-#include "io_occt/step_contents.h"
 #include "support/errors.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
@@ -61,16 +60,6 @@ TEST(IgesRanges, BeyondTheKnotsAreSaid) {
   ASSERT_EQ(model.warnings.size(), 1u);
   EXPECT_NE(model.warnings[0].find("is taken as the whole surface, its range is u from 3 to 4"), std::string::npos)
       << model.warnings[0];
-}
-
-TEST(StepContents, CountsEntitiesByKind) {
-  const StepKinds kinds = step_kinds(
-      "ISO-10303-21;\nHEADER;FILE_NAME('BLOCK(',$);ENDSEC;\nDATA;\n#1=BLOCK('it''s #2=SPHERE(',#2,1.,2.,.T.);\n"
-      "/* #3=TORUS(); */#4 = ( BOUNDED_CURVE() B_SPLINE_CURVE(3,(#5)) ) ;#5=CSG_SOLID('',#1);\n#6=\nBLOCK('');ENDSEC;");
-  EXPECT_EQ(kinds, (StepKinds{{"BLOCK", 2}, {"BOUNDED_CURVE", 1}, {"B_SPLINE_CURVE", 1}, {"CSG_SOLID", 1}}));
-  EXPECT_EQ(unread_shapes(kinds), "1 CSG_SOLID, 2 BLOCK");
-  EXPECT_EQ(contents_of({{"PERSON", 2}, {"DATE", 3}}), "3 DATE, 2 PERSON");
-  EXPECT_EQ(contents_of({}), "");
 }
 
 TEST(Contents, OfFilesWithoutSurfacesAreSaid) {

@@ -45,7 +45,7 @@ TEST(StepGeometryErrors, NameTheCurveAndItsLine) {
       {"CIRCLE('',#1,1.)", "#1 CARTESIAN_POINT in line 5: expected AXIS2_PLACEMENT_3D"},
       {"CIRCLE('',#20,1.", "#30 CIRCLE in line 4: expected"},
       {"LINE('',#1,#23)", "needs an interval", StatusCode::invalid_argument},
-      {"HYPERBOLA('',#20,1.,1.)", "#30 HYPERBOLA in line 4: is no curve", StatusCode::unsupported},
+      {"HYPERBOLA('',#20,1.,1.)", "#30 HYPERBOLA in line 4: needs an interval", StatusCode::invalid_argument},
       {"OFFSET_CURVE_3D('',#43,1.,.F.,#2)", "#30 OFFSET_CURVE_3D in line 4", StatusCode::unsupported},
       {"PLANE('',#20)", "is no curve that can be converted", StatusCode::unsupported},
       {"(A()B())", "#30 A in line 4: is no curve", StatusCode::unsupported},

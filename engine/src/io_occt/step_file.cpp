@@ -44,7 +44,8 @@
 #include "io_occt/memory_file.h"
 #include "io_occt/part_tree.h"
 #include "io_occt/spline_line.h"
-#include "io_occt/step_contents.h"
+#include "io/step/step_contents.h"
+#include "io/step/step_index.h"
 #include "io_occt/text_encoding.h"
 #include "tessera/io.h"
 
@@ -228,7 +229,8 @@ Result<CadFile> load_step(const std::string& path) {
   Result<std::string> text = read_file(path);
   if (!text) return text.status();
   const TextEncoding encoding = encoding_of(*text);
-  const StepKinds kinds = step_kinds(*text);
+  StepKinds kinds;
+  if (const Result<StepIndex> index = StepIndex::make(*text); index) kinds = step_kinds(*index);
   MemoryFile recoded;
   if (encoding != TextEncoding::utf8) {
     Result<MemoryFile> copy = MemoryFile::make(to_utf8(*text, encoding), path);

@@ -32,7 +32,7 @@ class ShapeMaker {
         execution_{.cancel = execution.cancel} {}
 
   Result<Shape> make() {
-    Result<StepTopology> topology = StepTopology::make(index_, input_.items, execution_);
+    Result<StepTopology> topology = StepTopology::make(index_, input_.items, input_.is_mirrored, execution_);
     if (!topology) return topology.status();
     topology_ = *std::move(topology);
     for (std::string& sentence : topology_.unread) faults_.left_out.push_back(std::move(sentence));
@@ -172,11 +172,12 @@ class ShapeMaker {
   }
 
   std::optional<Colour> colour_of(const StepFace& face) const {
-    if (!input_.colour) return {};
-    if (const Colour* const own = input_.colour(face.number)) return *own;
-    for (std::uint32_t whole = face.whole; whole != no_id; whole = topology_.wholes[whole].above)
-      if (const Colour* const above = input_.colour(topology_.wholes[whole].number)) return *above;
-    return {};
+    if (!input_.colours) return {};
+    const Colour* found = input_.colours->find(face.number);
+    for (std::uint32_t whole = face.whole; whole != no_id && !found; whole = topology_.wholes[whole].above)
+      found = input_.colours->find(topology_.wholes[whole].number);
+    if (!found) found = input_.colours->find(input_.representation);
+    return found ? std::optional<Colour>(*found) : std::nullopt;
   }
 
   StepGeometry geometry_;

@@ -2,13 +2,13 @@
 // One part of a STEP file as a shape.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/step/step_geometry.h"
+#include "io/step/step_styles.h"
 #include "tessera/execution.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
@@ -21,8 +21,9 @@ struct StepShapeInput {
   StepUnits units;
   double uncertainty = 0;  ///< of lengths, in the model's unit; 0: none is stated
   std::string name;
-  /// Returns the colour of an item, such as a face or a solid, or nullptr.
-  std::function<const Colour*(std::uint64_t)> colour;
+  bool is_mirrored = false;              ///< whether the shape is to be turned inside out
+  std::uint64_t representation = 0;      ///< whose colour is that of items without one
+  const StepColours* colours = nullptr;  ///< of items; may be null
 };
 
 /// What a shape lacks.

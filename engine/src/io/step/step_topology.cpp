@@ -52,7 +52,7 @@ class FaceWalk {
  public:
   FaceWalk(const StepIndex& index, StepTopology& out) : index_(index), out_(out) {}
 
-  void add_item(std::uint64_t number) { add(number, {}, 0); }
+  void add_item(std::uint64_t number, bool is_mirrored) { add(number, {no_id, no_id, no_id, is_mirrored}, 0); }
 
  private:
   struct Place {
@@ -60,6 +60,8 @@ class FaceWalk {
     bool reversed = false;
   };
   static constexpr int max_depth = 16;
+  /// Wholes may share faces, but a file must not grow by that.
+  std::size_t max_faces() const { return 2 * index_.instances().size(); }
 
   void add(std::uint64_t number, Place place, int depth) {
     StepEntity entity(index_, number);
@@ -73,6 +75,7 @@ class FaceWalk {
     }
     const std::uint32_t above = std::exchange(place.whole, static_cast<std::uint32_t>(out_.wholes.size()));
     const std::vector<std::uint64_t> parts = parts_of(entity, place);
+    if (out_.faces.size() > max_faces()) entity.fail("holds the same faces too often", StatusCode::unsupported);
     if (!entity.status().ok()) return out_.unread.push_back(entity.status().message());
     out_.wholes.push_back({number, above, place.shell, place.solid});
     const bool is_set = is_set_of_geometry(entity);
@@ -101,7 +104,6 @@ class FaceWalk {
       return entity.references(own_attribute(entity, "CONNECTED_FACE_SET", 0));
     }
     if (is_model(entity) || is_set_of_geometry(entity)) return entity.references(entity.attribute(1));
-    entity.fail("is no shape that can be read", StatusCode::unsupported);
     return {};
   }
 
@@ -281,10 +283,10 @@ std::uint64_t point_of(const StepIndex& index, std::uint64_t vertex) {
 }  // namespace
 
 Result<StepTopology> StepTopology::make(const StepIndex& index, std::span<const std::uint64_t> items,
-                                        const Execution& execution) {
+                                        bool is_mirrored, const Execution& execution) {
   StepTopology out;
   FaceWalk walk(index, out);
-  for (const std::uint64_t item : items) walk.add_item(item);
+  for (const std::uint64_t item : items) walk.add_item(item, is_mirrored);
   constexpr std::size_t grain = 64;
   std::vector<std::vector<RawBound>> bounds(out.faces.size());
   const Execution quiet{.cancel = execution.cancel};

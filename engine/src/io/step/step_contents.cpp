@@ -1,4 +1,4 @@
-#include "io_occt/step_contents.h"
+#include "io/step/step_contents.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// Shapes that have no surfaces of their own, or whose surfaces OpenCASCADE does not make.
+/// Shapes that have no surfaces of their own, or whose surfaces are not made.
 constexpr std::array<std::string_view, 24> unread{"TESSELLATED_SOLID",
                                                   "TESSELLATED_SHELL",
                                                   "TRIANGULATED_FACE",
@@ -64,15 +64,15 @@ std::string counts_of(const StepKinds& kinds, std::span<const std::string_view> 
 
 }  // namespace
 
-StepKinds step_kinds(std::string_view text) {
+StepKinds step_kinds(const StepIndex& index) {
   StepKinds out;
-  const Result<StepIndex> index = StepIndex::make(text);
-  if (!index) return out;
-  for (const std::string_view kind : index->kinds())
-    if (const std::size_t count = index->of_kind(kind).size(); count > 0) out.emplace(kind, count);
+  for (const std::string_view kind : index.kinds())
+    if (const std::size_t count = index.of_kind(kind).size(); count > 0) out.emplace(kind, count);
   StepRecord record;
-  for (const StepInstance& one : index->instances()) {
-    if (one.kind != StepIndex::several_kinds || !record.read(index->record(one)).ok()) continue;
+  for (const StepInstance& one : index.instances()) {
+    if (one.kind != StepIndex::several_kinds) continue;
+    const bool is_spline = index.record(one).find("B_SPLINE_") != std::string_view::npos;
+    if (is_spline || !record.read(index.record(one)).ok()) continue;
     for (std::size_t at = 0; at < record.size(); at = record[at].end) ++out[std::string(record[at].text)];
   }
   return out;

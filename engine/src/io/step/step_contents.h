@@ -5,13 +5,16 @@
 #include <string>
 #include <string_view>
 
+#include "io/step/step_index.h"
+
 namespace tessera { inline namespace abi_0_1 {
 
-/// The number of entities of each kind, such as "ADVANCED_FACE". An entity of several kinds counts for each.
+/// The number of entities of each kind, such as "ADVANCED_FACE". An entity of several kinds counts for each; rational
+/// splines, which are the most of these, are passed over.
 using StepKinds = std::map<std::string, std::size_t, std::less<>>;
-StepKinds step_kinds(std::string_view text);
+StepKinds step_kinds(const StepIndex& index);
 
-/// Shapes that OpenCASCADE does not read, as "2 TESSELLATED_SOLID, 1 CSG_SOLID"; empty if there are none.
+/// Shapes that neither reader takes, as "2 TESSELLATED_SOLID, 1 CSG_SOLID"; empty if there are none.
 std::string unread_shapes(const StepKinds& kinds);
 /// Says what a file without surfaces holds: its shapes as above, or else its most frequent kinds.
 std::string contents_of(const StepKinds& kinds);
