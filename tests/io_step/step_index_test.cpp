@@ -50,6 +50,16 @@ TEST(StepIndex, SortsByNumberAndKeepsTheFirstOfEqualOnes) {
   EXPECT_EQ(index.of_kind("NONE").size(), 0u);
 }
 
+TEST(StepIndex, FindsPartsOfInstancesOfSeveralKinds) {
+  const std::string text = file_of("#1=(A()BC(1))\n;#2=BC();#3=( X( ')BC(' ) );#4=(BC ()X());#5=(A()BCD());#6=(BC(;\n");
+  const StepIndex index = value_of(StepIndex::make(text));
+  std::string found;
+  for (const std::uint32_t place : index.with_part("BC"))
+    found += std::to_string(index.instances()[place].number) + ' ';
+  EXPECT_EQ(found, "1 4 ");
+  EXPECT_TRUE(index.with_part("NONE").empty());
+}
+
 TEST(StepIndex, TakesSeveralSectionsAndSkipsOthers) {
   const std::string text =
       "ISO-10303-21;HEADER;ENDSEC;ANCHOR;<a>=#1;ENDSEC;REFERENCE;#9=<b.stp#c>;ENDSEC;DATA('one',('S'));#1=A();ENDSEC;"

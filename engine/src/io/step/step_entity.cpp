@@ -126,6 +126,12 @@ bool StepEntity::logical(std::size_t at) {
   return word == "T";
 }
 
+std::string_view StepEntity::string(std::size_t at) {
+  if (!status_.ok() || is_omitted(at)) return {};
+  if (kind_of(at) != StepKind::text) return unexpected(at, "a text"), std::string_view();
+  return record_[at].text;
+}
+
 std::uint64_t StepEntity::reference(std::size_t at) {
   if (!status_.ok()) return 0;
   if (kind_of(at) != StepKind::reference) return unexpected(at, "a reference to an instance"), 0;
@@ -144,6 +150,11 @@ std::vector<std::uint64_t> StepEntity::references(std::size_t at) {
   std::vector<std::uint64_t> out;
   for (const std::size_t k : list(at)) out.push_back(reference(k));
   return out;
+}
+
+bool is_step_kind(const StepIndex& index, std::uint64_t number, std::string_view kind) {
+  const std::string_view alone = index.kind_of(number);
+  return alone == kind || (alone.empty() && StepEntity(index, number).is(kind));
 }
 
 }}  // namespace tessera::abi_0_1

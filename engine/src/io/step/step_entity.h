@@ -39,6 +39,7 @@ class StepEntity {
   std::size_t attribute(std::size_t k) { return attribute(0, k); }
   std::size_t attribute(std::size_t part, std::size_t k);
   std::size_t part(std::string_view kind) const { return record_.part(kind); }
+  const StepRecord& record() const { return record_; }  ///< empty if it is malformed or missing
   /// Tells whether a value is left out, $ or *.
   bool is_omitted(std::size_t at) const;
   StepKind kind_of(std::size_t at) const { return at < record_.size() ? record_[at].kind : StepKind::omitted; }
@@ -51,6 +52,7 @@ class StepEntity {
   int integer(std::size_t at);
   bool logical(std::size_t at);                           ///< .T. or .F.
   std::string_view enumeration(std::size_t at);           ///< without the dots
+  std::string_view string(std::size_t at);                ///< as it is in the file: see step_text(); empty if left out
   std::uint64_t reference(std::size_t at);                ///< to an instance of the file
   std::vector<double> reals(std::size_t at);              ///< a list
   std::vector<std::uint64_t> references(std::size_t at);  ///< a list
@@ -65,5 +67,8 @@ class StepEntity {
   StepRecord record_;
   Status status_;
 };
+
+/// Tells whether an instance is of the kind, or has a part of it. Reads its record only if it has parts.
+bool is_step_kind(const StepIndex& index, std::uint64_t number, std::string_view kind);
 
 }}  // namespace tessera::abi_0_1

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "io/step/step_record.h"
 #include "io/step/step_scan.h"
 #include "parallel/caller_arena.h"
 #include "parallel/parallel_for.h"
@@ -155,11 +156,31 @@ const StepInstance* StepIndex::find(std::uint64_t number) const {
   return found != instances_.end() && found->number == number ? &*found : nullptr;
 }
 
+std::string_view StepIndex::kind_of(std::uint64_t number) const {
+  const StepInstance* const instance = find(number);
+  return instance == nullptr || instance->kind == several_kinds ? std::string_view() : kinds_[instance->kind];
+}
+
 std::span<const std::uint32_t> StepIndex::of_kind(std::string_view kind) const {
   const auto found = std::ranges::find(kinds_, kind);
   if (found == kinds_.end()) return {};
   const auto k = static_cast<std::size_t>(found - kinds_.begin());
   return std::span(by_kind_).subspan(first_of_kind_[k], first_of_kind_[k + 1] - first_of_kind_[k]);
+}
+
+std::vector<std::uint32_t> StepIndex::with_part(std::string_view kind) const {
+  std::vector<std::uint32_t> out;
+  StepRecord values;
+  for (std::uint32_t k = 0; k < instances_.size(); ++k) {
+    if (instances_[k].kind != several_kinds) continue;
+    const std::string_view text = record(instances_[k]);
+    const std::string_view first = text.substr(std::min(skip_blanks(text, 1), text.size()));
+    // Parts stand in the order of the alphabet. Most of the text in parts is that of splines.
+    if (first.starts_with("B_SPLINE_") || first.starts_with("BOUNDED_")) continue;
+    if (text.find(kind) == std::string_view::npos) continue;
+    if (values.read(text).ok() && values.part(kind) != StepRecord::npos) out.push_back(k);
+  }
+  return out;
 }
 
 std::size_t StepIndex::line(std::uint64_t place) const {

@@ -47,10 +47,15 @@ class StepIndex {
   std::span<const StepInstance> instances() const { return instances_; }  ///< numbers rise
   /// Returns the instance with this number, or nullptr.
   const StepInstance* find(std::uint64_t number) const;
+  /// Returns the kind of the instance with this number; empty if there is none, or if it is of several kinds.
+  std::string_view kind_of(std::uint64_t number) const;
   std::string_view record(const StepInstance& of) const { return text_.substr(of.begin, of.length); }
   std::span<const std::string_view> kinds() const { return kinds_; }  ///< distinct names, such as "ADVANCED_FACE"
   /// Returns the places in instances() of those of one kind alone.
   std::span<const std::uint32_t> of_kind(std::string_view kind) const;
+  /// Returns the places in instances() of those of several kinds that have a part of this one. Reads the text of all
+  /// of several kinds, but for splines.
+  std::vector<std::uint32_t> with_part(std::string_view kind) const;
   /// Returns the line of a place in the text, from 1.
   std::size_t line(std::uint64_t place) const;
 

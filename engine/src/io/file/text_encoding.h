@@ -12,7 +12,8 @@ enum class TextEncoding { utf8, latin1, gbk };
 /// common Chinese characters of GB 2312 (its level 1, and marks), or else Latin-1 in the form of Windows-1252.
 TextEncoding encoding_of(std::string_view text);
 
-/// The text as UTF-8.
+/// Returns the text as UTF-8. What GBK lacks becomes U+FFFD. On a system whose iconv() lacks GBK, such a text is taken
+/// as Latin-1.
 std::string to_utf8(const std::string& text, TextEncoding encoding);
 
 /// "GBK", as messages name it.
