@@ -13,7 +13,7 @@ namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 /// Shapes that have no surfaces of their own, or whose surfaces are not made.
-constexpr std::array<std::string_view, 24> unread{"TESSELLATED_SOLID",
+constexpr std::array<std::string_view, 24> unread_kinds{"TESSELLATED_SOLID",
                                                   "TESSELLATED_SHELL",
                                                   "TRIANGULATED_FACE",
                                                   "COMPLEX_TRIANGULATED_FACE",
@@ -78,7 +78,7 @@ StepKinds step_kinds(const StepIndex& index) {
   return out;
 }
 
-std::string unread_shapes(const StepKinds& kinds) { return counts_of(kinds, unread); }
+std::string unread_shapes(const StepKinds& kinds) { return counts_of(kinds, unread_kinds); }
 
 std::string contents_of(const StepKinds& kinds) {
   const std::string shapes = counts_of(kinds, others, unread_shapes(kinds));

@@ -47,7 +47,7 @@ struct StepEdge {
 };
 
 /// A solid, shell or set that holds faces.
-struct StepWhole {
+struct StepFaceWhole {
   std::uint64_t number = 0;     ///< of its instance
   std::uint32_t above = no_id;  ///< index of the whole that holds it
   std::uint32_t shell = no_id;  ///< index of the shell, for faces in one
@@ -59,7 +59,7 @@ struct StepTopology {
   std::vector<StepFace> faces;          ///< in the order of the file's lists
   std::vector<StepEdge> edges;          ///< in the order in which faces use them
   std::vector<std::uint64_t> vertices;  ///< instances of their points: CARTESIAN_POINT
-  std::vector<StepWhole> wholes;
+  std::vector<StepFaceWhole> wholes;
   std::vector<std::uint32_t> shells;  ///< the solid of each shell, or no_id
   std::uint32_t solid_count = 0;
   std::vector<std::string> unread;  ///< items that hold no faces that can be read, one sentence each
