@@ -19,7 +19,8 @@ struct Extent {
   void extend(const Extent& other) { from = std::min(from, other.from), to = std::max(to, other.to); }
 };
 
-/// The extent of samples; where one is extreme between its neighbours, the curve may go a little farther.
+/// The extent of samples, and of the parabolas through three that follow each other: between samples, the curve may go
+/// a little farther.
 Extent extent_of(const EdgeTrace& piece, Along along) {
   Extent out;
   const auto value = [&](std::size_t k) { return of(piece.samples[k].place, along); };
@@ -27,8 +28,11 @@ Extent extent_of(const EdgeTrace& piece, Along along) {
     const double x = value(k);
     out.extend(x);
     if (k == 0 || k + 1 == piece.samples.size()) continue;
-    const double a = value(k - 1), b = value(k + 1), bend = 2 * x - a - b;
-    if ((x > a && x >= b) || (x >= a && x > b) || (x < a && x <= b) || (x <= a && x < b)) out.extend(x + bend / 4);
+    const double a = value(k - 1), b = value(k + 1), bend = a - 2 * x + b, rise = b - a;
+    constexpr double reach = 1.25;  // in steps from the middle: samples may be uneven
+    if (!(std::abs(rise) <= 2 * reach * std::abs(bend)) || bend == 0) continue;
+    const double beyond = -rise * rise / (8 * bend), margin = std::copysign(0.02 * std::abs(bend), -bend);
+    out.extend(x + beyond + margin);
   }
   return out;
 }
