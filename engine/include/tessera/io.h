@@ -189,6 +189,9 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 /// Returns the extension of `path` with letters from A to Z made small: ".obj", or nothing if there is none. Errors:
 /// none; throws std::bad_alloc if memory runs out. Memory: the result.
 std::string lower_extension(const std::filesystem::path& path);
+/// Returns the micrometres in a unit of length: "um", "mm", "cm", "m", "km", "in", "inch" or "ft"; 0 for other words.
+/// They are whole numbers, so the quotient of two units is rounded once. Errors: none.
+double micrometres_in(std::string_view unit);
 /// Checks that write_mesh() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
 Status check_mesh_format(const std::filesystem::path& path);
 /// Checks that write_model() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
