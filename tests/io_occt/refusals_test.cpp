@@ -110,7 +110,8 @@ TEST(ReadCad, OtherFilesAreRefused) {
   expect(folder / "none.stp", StatusCode::io_error, "none.stp: cannot be opened: No such file");
   std::filesystem::create_directory(folder / "folder.igs");
   expect(folder / "folder.igs", StatusCode::io_error, "folder.igs: is a directory");
-  expect(folder.file("part.dxf", "0"), StatusCode::unsupported, "are read as .brep, .brp, .iges, .igs, .step, .stp");
+  expect(folder.file("part.dxf", "0"), StatusCode::unsupported,
+         "are read as .brep, .brp, .iges, .igs, .p21, .step, .stp, .stpz");
   const std::string step = part_text(folder, "part.step");
   expect_refused(read_cad(folder.file("part.step", step), {.format = CadFormat::iges}), StatusCode::parse_error,
                  Status::no_index, "this is not IGES");

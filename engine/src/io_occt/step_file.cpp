@@ -40,8 +40,8 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "io/file/memory_file.h"
 #include "io_occt/cad_file.h"
-#include "io_occt/memory_file.h"
 #include "io_occt/part_tree.h"
 #include "io_occt/spline_line.h"
 #include "io_occt/step_contents.h"
