@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/tessera"
 headers=$1/engine/include/tessera
-cp "$headers"/tessera_c.h "$headers"/tessera_c_queries.h "$scratch/tessera"
+cp "$headers"/tessera_c*.h "$scratch/tessera"
 plant() {
   local header=$1
   sed "$2" "$headers/$header" >"$scratch/tessera/$header"

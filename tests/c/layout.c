@@ -1,9 +1,9 @@
-/* The layout of all structs of tessera_c.h on 64-bit machines, and the values of its constants, as they were released:
+/* The layout of all structs of tessera_c.h and tessera_c_files.h on 64-bit machines, and the values of its constants, as they were released:
  * they never change, except that structs grow at their end. */
 
 #include <stdio.h>
 
-#include "tessera/tessera_c.h"
+#include "tessera/tessera_c_files.h"
 
 #include "layout.h"
 
@@ -38,6 +38,12 @@ static const struct layout layout[] = {
     PLACE(tsr_bspline, knot_count_v, 72),
     PLACE(tsr_bspline, name, 80),
     SIZE(tsr_bspline, 88),
+    PLACE(tsr_read_options, struct_size, 0),
+    PLACE(tsr_read_options, format, 8),
+    PLACE(tsr_read_options, cad_reader, 16),
+    PLACE(tsr_read_options, step_reader, 24),
+    PLACE(tsr_read_options, reserved, 28),
+    SIZE(tsr_read_options, 32),
     PLACE(tsr_model_info, struct_size, 0),
     PLACE(tsr_model_info, surfaces, 8),
     PLACE(tsr_model_info, shapes, 16),
@@ -224,6 +230,9 @@ static const struct layout layout[] = {
     VALUE(TSR_INTERNAL, 14),
     VALUE(TSR_INVALID_HANDLE, 15),
     VALUE(TSR_IN_USE, 16),
+    VALUE(TSR_STEP_READER_TESSERA, 0),
+    VALUE(TSR_STEP_READER_OPENCASCADE, 1),
+    VALUE(TSR_STEP_READER_EITHER, 2),
     VALUE(TSR_TEXT_UNIT, 0),
     VALUE(TSR_TEXT_WARNING, 1),
     VALUE(TSR_TEXT_SURFACE, 2),

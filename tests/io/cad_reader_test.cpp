@@ -65,6 +65,11 @@ std::string as_size(std::uint64_t size) {
   return bytes;
 }
 
+/// Options of reading by a program.
+CadOptions by(const std::string& program, CadFormat format = CadFormat::by_extension) {
+  return {.format = format, .reader = program, .step_reader = StepReader::opencascade};
+}
+
 class CadReader : public testing::Test {
  protected:
   ~CadReader() override { EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child was not collected"; }
@@ -83,7 +88,7 @@ class CadReader : public testing::Test {
   }
   void expect(const std::string& program, StatusCode code, const std::string& words) const {
     SCOPED_TRACE(words);
-    const Result<Model> read = read_cad(part_, {.reader = program});
+    const Result<Model> read = read_cad(part_, by(program));
     expect_refused(read, code, Status::no_index, words);
     EXPECT_EQ(read.status().message().find(part_ + ": "), 0u) << read.status().message();
   }
@@ -101,15 +106,17 @@ class CadReader : public testing::Test {
 };
 
 TEST(IsCadFile, LooksAtTheExtensionAlone) {
-  for (const char* path : {"a.step", "b.STP", "c.d/e.IgEs", "f.igs", "g.brep", "..brp"})
+  for (const char* path :
+       {"a.step", "b.STP", "c.d/e.IgEs", "f.igs", "g.brep", "..brp", "a.p21", "b.stpZ", "c.step.gz", "d.IGS.GZ"})
     EXPECT_TRUE(is_cad_file(path)) << path;
-  for (const char* path : {"", "step", ".step", "a/.step", "a.step/b", "a.step.gz", "a.step ", "a.ste", "..", "a."})
+  for (const char* path :
+       {"", "step", ".step", "a/.step", "a.step/b", "a.gz", ".step.gz", "a.step.gz.gz", "a.step ", "a.ste", "..", "a."})
     EXPECT_FALSE(is_cad_file(path)) << path;
 }
 
 TEST_F(CadReader, AnyProgramThatKeepsItsWordWillDo) {
   const std::string program = printing(greeting_ + as_size(model().size()) + model());
-  const Result<Model> read = read_cad(part_, {.reader = program});
+  const Result<Model> read = read_cad(part_, by(program));
   ASSERT_TRUE(read.ok()) << read.status().message();
   EXPECT_EQ(read->name, "part");
   EXPECT_EQ(*read->surfaces.at(0).name, "face");
@@ -125,15 +132,15 @@ TEST_F(CadReader, ItIsToldTheFormatTheFileAndItsServant) {
                                      {CadFormat::iges, "IGES"},
                                      {CadFormat::step, "STEP"},
                                      {CadFormat::brep, "BREP"}}) {
-    EXPECT_FALSE(read_cad(part_, {.format = format, .reader = program}).ok());
+    EXPECT_FALSE(read_cad(part_, by(program, format)).ok());
     EXPECT_EQ(content_of(folder_ / "words"), std::string(name) + " " + part_ + " " + std::to_string(::getpid()) + "\n");
   }
 }
 
 TEST_F(CadReader, ItsErrorsArePassedOn) {
   const std::string bytes = to_bytes(Status(StatusCode::parse_error, part_ + ": line 3 is wrong", 7));
-  expect_refused(read_cad(part_, {.reader = printing(greeting_ + as_size(bytes.size()) + bytes)}),
-                 StatusCode::parse_error, 7, part_ + ": line 3 is wrong");
+  expect_refused(read_cad(part_, by(printing(greeting_ + as_size(bytes.size()) + bytes))), StatusCode::parse_error, 7,
+                 part_ + ": line 3 is wrong");
 }
 
 TEST_F(CadReader, OneThatCannotBeStartedIsNamed) {
@@ -213,7 +220,8 @@ TEST_F(CadReader, CancellingEndsIt) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     cancel = true;
   });
-  const Result<Model> read = read_cad(part_, {.reader = program, .cancel = &cancel});
+  const Result<Model> read =
+      read_cad(part_, {.reader = program, .cancel = &cancel, .step_reader = StepReader::opencascade});
   later.join();
   expect_refused(read, StatusCode::cancelled, Status::no_index, part_ + ": the reading was cancelled");
   EXPECT_EQ(::kill(std::stoi(content_of(mark)), 0), -1) << "it still runs";
@@ -251,7 +259,8 @@ TEST_F(CadReader, ItsLackIsAnErrorThatSaysWhatToDo) {
   const AloneBeside alone(own_folder());
   const Variable none("TESSERA_CAD_READER", ""), path("PATH", folder_.path().string());
   folder_.file("tessera-cad-reader", "not executable, which PATH passes over");
-  for (const Result<Model>& read : {read_cad(part_), read_model(part_)})
+  const CadOptions options = by("");
+  for (const Result<Model>& read : {read_cad(part_, options), read_model(part_, {.cad = options})})
     expect_refused(read, StatusCode::unsupported, Status::no_index,
                    part_ +
                        ": STEP files are read by the program tessera-cad-reader, which is neither beside this "

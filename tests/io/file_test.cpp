@@ -29,6 +29,20 @@ Status write_text(const std::string& path, std::string_view text) {
   return out->commit();
 }
 
+TEST(MicrometresIn, QuotientsOfUnitsAreRoundedOnce) {
+  for (const auto& [unit, metres] : {std::pair{"um", 1e-6},
+                                     {"mm", 1e-3},
+                                     {"cm", 1e-2},
+                                     {"m", 1.},
+                                     {"km", 1e3},
+                                     {"in", 0.0254},
+                                     {"inch", 0.0254},
+                                     {"ft", 0.3048}})
+    EXPECT_EQ(micrometres_in(unit) / micrometres_in("m"), metres) << unit;
+  EXPECT_EQ(micrometres_in("in") / micrometres_in("mm"), 25.4);
+  for (const char* const other : {"", "MM", "mm ", "yard"}) EXPECT_EQ(micrometres_in(other), 0) << other;
+}
+
 TEST(ReadFile, BytesComeAsTheyAre) {
   const ScratchFolder folder;
   std::string bytes(100000, '\0');

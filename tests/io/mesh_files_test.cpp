@@ -285,13 +285,15 @@ TEST(Formats, UnknownOnesAreNamedWithThoseThatAreKnown) {
   const ScratchFolder folder;
   const std::string model = folder.file("a.k3d", "x"), none = folder.file("plain", "x"),
                     mesh = folder.file("b.off", "x");
-  EXPECT_EQ(read_model(model).status().message(), model +
-                                                      ": unsupported format \".k3d\": surfaces are read as .bpt, .bv, "
-                                                      ".g2, .json, .obj, .rib, .brep, .brp, .iges, .igs, .step, .stp");
+  EXPECT_EQ(read_model(model).status().message(),
+            model +
+                ": unsupported format \".k3d\": surfaces are read as .bpt, .bv, "
+                ".g2, .json, .obj, .rib, .brep, .brp, .iges, .igs, .p21, .step, .stp, .stpz");
   EXPECT_EQ(read_model(model).status().code(), StatusCode::unsupported);
-  EXPECT_EQ(read_model(none).status().message(), none +
-                                                     ": unsupported format \"\": surfaces are read as .bpt, .bv, .g2, "
-                                                     ".json, .obj, .rib, .brep, .brp, .iges, .igs, .step, .stp");
+  EXPECT_EQ(read_model(none).status().message(),
+            none +
+                ": unsupported format \"\": surfaces are read as .bpt, .bv, .g2, "
+                ".json, .obj, .rib, .brep, .brp, .iges, .igs, .p21, .step, .stp, .stpz");
   EXPECT_EQ(read_mesh(mesh).status().message(),
             mesh + ": unsupported format \".off\": meshes are read as .obj, .ply, .stl, .glb, .gltf");
   EXPECT_EQ(write_mesh(random_mesh(3, 1), mesh).message(),

@@ -22,7 +22,7 @@ class BadCadFile : public testing::TestWithParam<const char*> {
   std::string name(const std::string& stem) const { return stem + GetParam(); }
   /// Some points of the torus as read from this text, or no number and a failure.
   std::vector<Vec3> points_of(const std::string& text, const std::string& stem = "m") const {
-    const Result<Model> model = read_cad(folder_.file(name(stem), text));
+    const Result<Model> model = read_by_opencascade(folder_.file(name(stem), text));
     EXPECT_TRUE(model.ok()) << model.status().message();
     std::vector<Vec3> points;
     if (!model) return points;
@@ -33,7 +33,7 @@ class BadCadFile : public testing::TestWithParam<const char*> {
     return points;
   }
   void expect_error(const std::string& path, StatusCode code, const std::string& words) const {
-    expect_refused(read_cad(path), code, Status::no_index, path + words);
+    expect_refused(read_by_opencascade(path), code, Status::no_index, path + words);
   }
 
   ScratchFolder folder_;
@@ -63,7 +63,7 @@ TEST_P(BadCadFile, LayoutDoesNotMatter) {
   }
   // Errors name the file all the same.
   const std::string bad = folder_.file(name("bad"), "\xEF\xBB\xBFnonsense\n");
-  expect_refused(read_cad(bad), StatusCode::parse_error, Status::no_index, bad + ":");
+  expect_refused(read_by_opencascade(bad), StatusCode::parse_error, Status::no_index, bad + ":");
 }
 
 TEST_P(BadCadFile, TheLocaleDoesNotMatter) {

@@ -43,6 +43,11 @@ void write_cad(const TopoDS_Shape& shape, const std::string& path) {
   if (!written) throw std::runtime_error("OpenCASCADE cannot write " + path);
 }
 
+Result<Model> read_by_opencascade(const std::filesystem::path& path, CadOptions options) {
+  options.step_reader = StepReader::opencascade;
+  return read_cad(path, options);
+}
+
 Result<CadFile> load_cad(const std::string& path) {
   return is_step(path) ? load_step(path) : is_brep(path) ? load_brep(path) : load_iges(path);
 }

@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "io_occt/cad_file.h"
+#include "tessera/cad.h"
 
 namespace tessera::test {
 
 /// Writes `shape` to a STEP, an IGES or a BREP file, by the extension; .binary.brep is BREP in its binary form, and
 /// .solid.igs IGES with topology: solids (186) of faces with shared edges, instead of trimmed surfaces (144).
 void write_cad(const TopoDS_Shape& shape, const std::string& path);
+/// The model of a file that the program tessera-cad-reader reads, whoever reads STEP by default.
+Result<Model> read_by_opencascade(const std::filesystem::path& path, CadOptions options = {});
 /// The file as OpenCASCADE reads it, in this process.
 Result<CadFile> load_cad(const std::string& path);
 /// In the order of models.

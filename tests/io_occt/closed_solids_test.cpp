@@ -76,7 +76,7 @@ void add(const Shape& shape, std::size_t instances, double tolerance, Totals& to
 /// Meshes a file at ten tolerances.
 void check_file(const std::filesystem::path& path) {
   const Result<CadFile> file = load_cad(path);
-  const Result<Model> model = read_cad(path);
+  const Result<Model> model = read_by_opencascade(path);
   if (!file || !model || model->shapes.empty()) return;
   std::map<std::uint32_t, std::size_t> instances;
   for (const Instance& instance : model->instances) ++instances[instance.shape];
@@ -100,7 +100,7 @@ TEST(ClosedSolids, HaveFewMoreTrianglesThanUnconnectedFaces) {
   for (const std::filesystem::path& path : files) {
     if (path.filename() != "as1-oc-214.stp" && path.filename() != "screw.step") continue;
     std::size_t closed = 0, open = 0;
-    for (const Shape& shape : value_of(read_cad(path)).shapes) {
+    for (const Shape& shape : value_of(read_by_opencascade(path)).shapes) {
       const TessellationOptions options{.tolerance = 1e-4, .relative = true};
       closed += mesh_of(shape, options).report.triangles;
       TessellationOptions apart = options;

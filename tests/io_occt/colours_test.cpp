@@ -47,7 +47,7 @@ class StepColours : public testing::Test {
     step.insert(step.rfind("ENDSEC;"), entities +
                                            "#90000=MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(" +
                                            styles + ")," + context() + ");\n");
-    return value_of(read_cad(folder_.file("box.step", step)));
+    return value_of(read_by_opencascade(folder_.file("box.step", step)));
   }
   std::string context() const {
     const std::size_t end = step_.find(" = ( GEOMETRIC_REPRESENTATION_CONTEXT(3)"), begin = step_.rfind('#', end);
@@ -97,7 +97,7 @@ TEST_F(StepColours, StylesOfOneContextAreLeftOut) {
 TEST(RealColours, EachPartOfAnAssemblyHasItsOwn) {
   for (const std::filesystem::path& path : real_cad_files()) {
     if (path.filename() != "as1-oc-214.stp") continue;
-    const Model model = value_of(read_cad(path));
+    const Model model = value_of(read_by_opencascade(path));
     // STYLED_ITEMs of the file.
     const std::map<std::string, Colour> expected{{"nut", {1, 0, 0}},
                                                  {"rod", {1, 0.5f, 0}},

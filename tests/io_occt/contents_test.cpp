@@ -37,7 +37,7 @@ std::string iges_text(const std::string& ranges) {
 TEST(IgesRanges, ThatAreLeftOutAreThoseOfTheKnots) {
   const ScratchFolder folder;
   for (const char* const ranges : {"", ",,,,", ",0.,2.", ",0.,2.,0.,1."}) {
-    const Model model = value_of(read_cad(folder.file("part.igs", iges_text(ranges))));
+    const Model model = value_of(read_by_opencascade(folder.file("part.igs", iges_text(ranges))));
     ASSERT_EQ(model.surfaces.size(), 1u) << ranges;
     EXPECT_EQ(std::get<BSplineSurface>(model.surfaces[0].surface).domain(), (Domain{0, 2, 0, 1})) << ranges;
     EXPECT_TRUE(model.warnings.empty()) << model.warnings[0];
@@ -46,7 +46,7 @@ TEST(IgesRanges, ThatAreLeftOutAreThoseOfTheKnots) {
 
 TEST(IgesRanges, ArePartsOfTheSurface) {
   const ScratchFolder folder;
-  const Model model = value_of(read_cad(folder.file("part.igs", iges_text(",0.5,1.5,0.25,1."))));
+  const Model model = value_of(read_by_opencascade(folder.file("part.igs", iges_text(",0.5,1.5,0.25,1."))));
   ASSERT_EQ(model.surfaces.size(), 1u);
   const BSplineSurface& surface = std::get<BSplineSurface>(model.surfaces[0].surface);
   EXPECT_EQ(surface.domain(), (Domain{0.5, 1.5, 0.25, 1}));
@@ -56,7 +56,7 @@ TEST(IgesRanges, ArePartsOfTheSurface) {
 
 TEST(IgesRanges, BeyondTheKnotsAreSaid) {
   const ScratchFolder folder;
-  const Model model = value_of(read_cad(folder.file("part.igs", iges_text(",3.,4.,0.,1."))));
+  const Model model = value_of(read_by_opencascade(folder.file("part.igs", iges_text(",3.,4.,0.,1."))));
   ASSERT_EQ(model.warnings.size(), 1u);
   EXPECT_NE(model.warnings[0].find("is taken as the whole surface, its range is u from 3 to 4"), std::string::npos)
       << model.warnings[0];
@@ -70,7 +70,7 @@ TEST(Contents, OfFilesWithoutSurfacesAreSaid) {
   ASSERT_NE(solid, std::string::npos);
   const std::string entities = "#90001=CSG_SOLID('',#90002);\n#90002=BLOCK('',#11,1.,2.,3.);\n";
   step.insert(step.rfind("ENDSEC;"), entities);
-  const Model both = value_of(read_cad(folder.file("both.step", step)));
+  const Model both = value_of(read_by_opencascade(folder.file("both.step", step)));
   ASSERT_EQ(both.warnings.size(), 1u);
   EXPECT_NE(both.warnings[0].find("shapes of these kinds are not read: 1 CSG_SOLID, 1 BLOCK"), std::string::npos);
 
@@ -78,11 +78,11 @@ TEST(Contents, OfFilesWithoutSurfacesAreSaid) {
       "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
       "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n#11=CARTESIAN_POINT('',(0.,0.,0.));\n" +
       entities + "ENDSEC;\nEND-ISO-10303-21;\n";
-  expect_refused(read_cad(folder.file("alone.step", alone)), StatusCode::parse_error, Status::no_index,
+  expect_refused(read_by_opencascade(folder.file("alone.step", alone)), StatusCode::parse_error, Status::no_index,
                  "it holds no surfaces (1 CSG_SOLID, 1 BLOCK)");
 
   write_cad(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 2, 3)).Shape(), folder / "line.brep");
-  expect_refused(read_cad(folder / "line.brep"), StatusCode::parse_error, Status::no_index,
+  expect_refused(read_by_opencascade(folder / "line.brep"), StatusCode::parse_error, Status::no_index,
                  "it holds no surfaces (1 edge, 2 vertices)");
 }
 
@@ -102,11 +102,11 @@ TEST(BrepVersions, AreKnownByTheirNumber) {
     for (const char* const owner : {"Matra-Datavision", "Open Cascade", "Open CASCADE Tools\r"}) {
       std::string other = text;
       other.replace(place, end - place, mark + ", (c) " + owner);
-      EXPECT_EQ(value_of(read_cad(folder.file("other.brep", other))).surfaces.size(), 6u) << mark << owner;
+      EXPECT_EQ(value_of(read_by_opencascade(folder.file("other.brep", other))).surfaces.size(), 6u) << mark << owner;
     }
   }
   text.replace(place, end - place, "CASCADE Topology V4, (c) Nobody");
-  expect_refused(read_cad(folder.file("new.brep", text)), StatusCode::parse_error, Status::no_index,
+  expect_refused(read_by_opencascade(folder.file("new.brep", text)), StatusCode::parse_error, Status::no_index,
                  "its version must be 1 to 3, found \"CASCADE Topology V4, (c) Nobody\"");
 }
 

@@ -79,7 +79,7 @@ TEST(EdgeMatching, OfRealFilesIsOpenCascadesSewing) {
   std::size_t compared = 0;
   for (const std::filesystem::path& path : real_cad_files()) {
     if (path.extension() != ".igs" && path.extension() != ".iges") continue;
-    const Result<Model> model = read_cad(path.string());
+    const Result<Model> model = read_by_opencascade(path.string());
     if (!model || model->shapes.empty()) continue;
     const Result<CadFile> file = load_cad(path.string());
     ASSERT_TRUE(file.ok()) << path;
@@ -110,7 +110,7 @@ TEST(EdgeMatching, ClosesRealSolids) {
   for (const std::filesystem::path& path : real_cad_files()) {
     const auto expected = known.find(path.filename().string());
     if (expected == known.end()) continue;
-    const Model model = value_of(read_cad(path.string()));
+    const Model model = value_of(read_by_opencascade(path.string()));
     ASSERT_EQ(model.shapes.size(), 1u);
     const Shape made = value_of(joined_edges(model.shapes[0], 1e-4 * size_of(model)));
     EXPECT_EQ(counts_of(made), (Counts{{2, expected->second.first}})) << path;

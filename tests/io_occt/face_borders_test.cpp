@@ -76,7 +76,7 @@ TopoDS_Face face_on(const handle<Geom_Surface>& surface, const std::vector<TopoD
 Model read(const TopoDS_Shape& shape) {
   const ScratchFolder folder;
   write_cad(shape, folder / "shape.brep");
-  return value_of(read_cad(folder / "shape.brep"));
+  return value_of(read_by_opencascade(folder / "shape.brep"));
 }
 
 double area_of(const Shape& shape) {
@@ -225,7 +225,7 @@ TEST(FaceBorders, EdgesMayStartAwayFromTheFirstKnotOfPeriodicSplines) {
     const ScratchFolder folder;
     for (const char* const name : {"prism.brep", "prism.step"}) {
       write_cad(BRepPrimAPI_MakePrism(base, gp_Vec(0, 0, 3)).Shape(), folder / name);
-      const Model model = value_of(read_cad(folder / name));
+      const Model model = value_of(read_by_opencascade(folder / name));
       ASSERT_EQ(model.shapes.size(), 1u);
       const ShapeMesh made = mesh_of(model.shapes[0], {.tolerance = 1e-4, .relative = true});
       EXPECT_EQ(made.report.open_edges, 0u) << start << ' ' << name;

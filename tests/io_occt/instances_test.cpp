@@ -70,7 +70,7 @@ TEST(Instances, HaveColoursOfTheirOwn) {
                    ");\n#90011=SHAPE_DEFINITION_REPRESENTATION(#90010,#90012);\n"
                    "#90012=SHAPE_REPRESENTATION('',(),$);\n" +
                    red_style(instances_number_of(step, "MANIFOLD_SOLID_BREP"), "#90012"));
-  const Model model = value_of(read_cad(folder.file("coloured.step", step)));
+  const Model model = value_of(read_by_opencascade(folder.file("coloured.step", step)));
   EXPECT_TRUE(model.warnings.empty()) << model.warnings[0];
   ASSERT_EQ(model.instances.size(), 2u);
   EXPECT_EQ(red_faces(model.shapes[model.instances[0].shape]), 0u);
@@ -83,7 +83,7 @@ TEST(Instances, ColoursOfOtherContextsAreSaid) {
   std::string step = box_text(folder);
   insert(step, red_style(instances_number_of(step, "MANIFOLD_SOLID_BREP"),
                          instances_number_of(step, "ADVANCED_BREP_SHAPE_REPRESENTATION")));
-  const Model model = value_of(read_cad(folder.file("context.step", step)));
+  const Model model = value_of(read_by_opencascade(folder.file("context.step", step)));
   EXPECT_EQ(red_faces(model.shapes.at(0)), 0u);
   ASSERT_EQ(model.warnings.size(), 1u);
   EXPECT_NE(model.warnings[0].find(": 1 colour of single contexts not read"), std::string::npos) << model.warnings[0];
@@ -101,7 +101,7 @@ TEST(Instances, AreNamedByTheirIdWhereTheNameIsEmpty) {
     for (int k = 0; k < 3; ++k) end = step.find('\'', end + 1);
     step.replace(id, end + 1 - id, "'" + name + "',''");
   }
-  const Model model = value_of(read_cad(folder.file("named.step", step)));
+  const Model model = value_of(read_by_opencascade(folder.file("named.step", step)));
   ASSERT_EQ(model.instances.size(), 2u);
   EXPECT_EQ(*model.instances[0].name, "left");
   EXPECT_EQ(*model.instances[1].name, "right");
@@ -136,7 +136,7 @@ TEST(Instances, KeepTheScalesAndMirrorsOfMappedItems) {
                                 {begin + "$,$,#90004,1.,$);\n", 6, 0}};
   for (const Case& c : cases) {
     const ScratchFolder folder;
-    const Model model = value_of(read_cad(folder.file("mapped.step", mapped_text(folder, axes + c.target))));
+    const Model model = value_of(read_by_opencascade(folder.file("mapped.step", mapped_text(folder, axes + c.target))));
     ASSERT_EQ(model.instances.size(), 1u) << c.target;
     const PatchSet set = value_of(make_patch_set(model));
     const Tessellation plan = value_of(Tessellation::make(set, {.tolerance = 0.1}));
@@ -170,7 +170,7 @@ TEST(Instances, OfMappedItemsHaveColoursOfTheirOwn) {
       style.replace(at, given.size(), free);
   }
   insert(step, style);
-  const Model model = value_of(read_cad(folder.file("coloured.step", step)));
+  const Model model = value_of(read_by_opencascade(folder.file("coloured.step", step)));
   ASSERT_EQ(model.instances.size(), 2u);
   EXPECT_EQ(model.instances[0].placement->point({}).x, 5);
   EXPECT_EQ(red_faces(model.shapes[model.instances[0].shape]), 0u);
@@ -188,7 +188,7 @@ TEST(Names, OfLatin1AndGbkBecomeUtf8) {
     step.replace(product, step.find('\'', product) - product, "1");
     const std::size_t name = step.find('\'', product + 2) + 1;
     step.replace(name, step.find('\'', name) - name, given);
-    const Model model = value_of(read_cad(folder.file("named.step", step)));
+    const Model model = value_of(read_by_opencascade(folder.file("named.step", step)));
     EXPECT_EQ(*model.shapes.at(0).name, expected);
     EXPECT_EQ(model.warnings.size(), encoding.empty() ? 0u : 1u);
     for (const std::string& warning : model.warnings) EXPECT_NE(warning.find(encoding), std::string::npos) << warning;

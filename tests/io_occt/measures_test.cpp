@@ -140,7 +140,7 @@ void compare_solids(const std::string& file, const TopoDS_Shape& shape, const Mo
 
 void compare(const std::string& file, Differences& all) {
   const Result<CadFile> loaded = load_cad(file);
-  const Result<Model> model = read_cad(file);
+  const Result<Model> model = read_by_opencascade(file);
   if (!loaded || !model || model->surfaces.empty()) return;
   ++all.files;
   compare_areas(file, loaded->shape, *model, all);

@@ -13,7 +13,7 @@ namespace tessera::test { namespace {
 
 const Model* find(const std::vector<std::filesystem::path>& files, const char* name, Result<Model>& model) {
   for (const std::filesystem::path& path : files)
-    if (path.filename() == name) model = read_cad(path);
+    if (path.filename() == name) model = read_by_opencascade(path);
   return model.ok() ? &*model : nullptr;
 }
 

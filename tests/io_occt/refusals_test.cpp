@@ -55,7 +55,7 @@ TEST(ReadCad, CutFilesAreRefused) {
     for (std::size_t k = 0; k < 60; ++k) {
       // The end of the last line may be missing.
       const std::size_t size = k * (whole.size() - 90) / 59;
-      const Result<Model> model = read_cad(folder.file(name, whole.substr(0, size)));
+      const Result<Model> model = read_by_opencascade(folder.file(name, whole.substr(0, size)));
       ASSERT_FALSE(model.ok()) << name << " cut after " << size << " of " << whole.size() << " bytes";
       EXPECT_EQ(model.status().code(), StatusCode::parse_error) << model.status().message();
       EXPECT_EQ(model.status().message().find(folder / name + ":"), 0u) << model.status().message();
@@ -73,7 +73,7 @@ TEST(ReadCad, DamagedFilesDoNoHarm) {
       std::string damaged = whole;
       for (int hit = 0; hit < 1 + k / 4; ++hit)
         damaged[random() % damaged.size()] = "0123456789,.;#DE -()'"[random() % 21];
-      const Result<Model> model = read_cad(folder.file(name, damaged));
+      const Result<Model> model = read_by_opencascade(folder.file(name, damaged));
       if (model) {
         ++read;
         EXPECT_FALSE(model->surfaces.empty());
@@ -91,7 +91,7 @@ TEST(ReadCad, DamagedFilesDoNoHarm) {
 TEST(ReadCad, OtherFilesAreRefused) {
   const ScratchFolder folder;
   const auto expect = [&](const std::string& path, StatusCode code, const std::string& words) {
-    expect_refused(read_cad(path), code, Status::no_index, words);
+    expect_refused(read_by_opencascade(path), code, Status::no_index, words);
   };
   expect(folder.file("text.step", "A letter,\nnot a part.\n"), StatusCode::parse_error,
          "text.step: OpenCASCADE cannot read it as STEP: Line 2: Incorrect syntax");
@@ -110,16 +110,17 @@ TEST(ReadCad, OtherFilesAreRefused) {
   expect(folder / "none.stp", StatusCode::io_error, "none.stp: cannot be opened: No such file");
   std::filesystem::create_directory(folder / "folder.igs");
   expect(folder / "folder.igs", StatusCode::io_error, "folder.igs: is a directory");
-  expect(folder.file("part.dxf", "0"), StatusCode::unsupported, "are read as .brep, .brp, .iges, .igs, .step, .stp");
+  expect(folder.file("part.dxf", "0"), StatusCode::unsupported,
+         "are read as .brep, .brp, .iges, .igs, .p21, .step, .stp, .stpz");
   const std::string step = part_text(folder, "part.step");
-  expect_refused(read_cad(folder.file("part.step", step), {.format = CadFormat::iges}), StatusCode::parse_error,
-                 Status::no_index, "this is not IGES");
+  expect_refused(read_by_opencascade(folder.file("part.step", step), {.format = CadFormat::iges}),
+                 StatusCode::parse_error, Status::no_index, "this is not IGES");
 }
 
 TEST(ReadCad, UnreadableFacesAreNamedAndLeftOut) {
   const ScratchFolder folder;
   write_cad(bezier_face(18, false), folder / "steep.step");
-  expect_refused(read_cad(folder / "steep.step"), StatusCode::unsupported_degree, Status::no_index,
+  expect_refused(read_by_opencascade(folder / "steep.step"), StatusCode::unsupported_degree, Status::no_index,
                  "is left out: degree u is 18, it must be 1 to 15; the file holds 1 SHELL_BASED_SURFACE_MODEL, "
                  "1 ADVANCED_FACE");
 
@@ -128,7 +129,7 @@ TEST(ReadCad, UnreadableFacesAreNamedAndLeftOut) {
   BRep_Builder().Add(both, bezier_face(18, false));
   BRep_Builder().Add(both, bezier_face(3, false));
   write_cad(both, folder / "both.step");
-  const Result<Model> model = read_cad(folder / "both.step");
+  const Result<Model> model = read_by_opencascade(folder / "both.step");
   ASSERT_TRUE(model.ok()) << model.status().message();
   EXPECT_EQ(model->surfaces.size(), 1u);
   ASSERT_EQ(model->warnings.size(), 1u);
@@ -141,12 +142,12 @@ TEST(ReadCad, NegativeWeightsAreRefused) {
   std::string messages;
   for (const char* const name : {"weight.step", "weight.igs"}) {
     write_cad(bezier_face(3, true), folder / name);
-    ASSERT_TRUE(read_cad(folder / name).ok());
+    ASSERT_TRUE(read_by_opencascade(folder / name).ok());
     std::string text = content_of(folder / name);
     const std::size_t place = text.find("0.625");
     ASSERT_NE(place, std::string::npos);
     text.replace(place, 5, "-.125");
-    const Result<Model> model = read_cad(folder.file(name, text));
+    const Result<Model> model = read_by_opencascade(folder.file(name, text));
     ASSERT_FALSE(model.ok()) << name;
     EXPECT_EQ(model.status().message().find(folder / name + ":"), 0u) << model.status().message();
     messages += model.status().message() + '\n';
@@ -162,7 +163,7 @@ TEST(ReadCad, PrintsNothing) {
   write_cad(part(), path);
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const bool read = read_cad(path).ok(), refused = !read_cad(bad).ok();
+  const bool read = read_by_opencascade(path).ok(), refused = !read_by_opencascade(bad).ok();
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_TRUE(read && refused);
@@ -179,7 +180,7 @@ TEST(ReadCad, ManyThreadsReadAtOnce) {
   for (int k = 0; k < 8; ++k)
     threads.emplace_back([&, k] {
       for (int round = 0; round < 3; ++round) {
-        const Result<Model> model = read_cad(folder / names[(k + round) % 3]);
+        const Result<Model> model = read_by_opencascade(folder / names[(k + round) % 3]);
         good += model.ok() && model->surfaces.size() == 7;
       }
     });

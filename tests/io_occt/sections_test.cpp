@@ -31,7 +31,7 @@ struct ClosedPart {
 };
 
 std::optional<ClosedPart> closed_part(const std::filesystem::path& path) {
-  Result<Model> model = read_cad(path);
+  Result<Model> model = read_by_opencascade(path);
   if (!model || model->shapes.empty() || model->surfaces.size() > 2000) return {};
   double gap = 0;
   for (const Shape& shape : model->shapes) {

@@ -228,7 +228,7 @@ TEST(FaceBox, NoRealFaceEndsInSlivers) {
   const std::vector<std::filesystem::path> files = real_cad_files();
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   for (const std::filesystem::path& path : files) {
-    const Result<Model> model = read_cad(path);
+    const Result<Model> model = read_by_opencascade(path);
     for (std::size_t k = 0; model && k < model->surfaces.size(); ++k)
       EXPECT_GT(narrowest_end(std::get<BSplineSurface>(model->surfaces[k].surface)), 1e-5) << path << ", face " << k;
   }
@@ -306,7 +306,7 @@ TEST(ReadCad, PrimitivesComeBackFromEveryFormat) {
   const Vec3 origin = vec3(axes.Location().XYZ()), z = vec3(axes.Direction().XYZ());
   for (const char* const name : {"sphere.step", "sphere.igs", "sphere.brep", "sphere.binary.brep"}) {
     write_cad(BRepPrimAPI_MakeSphere(axes, 2).Shape(), folder / name);
-    const Result<Model> model = read_cad(folder / name);
+    const Result<Model> model = read_by_opencascade(folder / name);
     ASSERT_TRUE(model.ok()) << model.status().message();
     EXPECT_EQ(model->name.find("sphere"), 0u);
     EXPECT_TRUE(model->warnings.empty()) << model->warnings[0];
@@ -323,7 +323,7 @@ TEST(ReadCad, PrimitivesComeBackFromEveryFormat) {
   }
   for (const char* const name : {"cylinder.stp", "cylinder.IGES", "cylinder.brp"}) {
     write_cad(BRepPrimAPI_MakeCylinder(axes, 2, 5).Shape(), folder / name);
-    const Result<Model> model = read_cad(folder / name);
+    const Result<Model> model = read_by_opencascade(folder / name);
     ASSERT_TRUE(model.ok()) << model.status().message();
     ASSERT_EQ(model->surfaces.size(), 3u);
     expect_normals_outwards(*model, origin + 2.5 * z);
@@ -348,7 +348,8 @@ TEST(ReadCad, IgesExponentsAreWrittenWithEOrD) {
         ++changed;
       }
   ASSERT_GE(changed, 6u) << text;
-  const Result<Model> with_e = read_cad(folder / "e.igs"), with_d = read_cad(folder.file("d.igs", text));
+  const Result<Model> with_e = read_by_opencascade(folder / "e.igs"),
+                      with_d = read_by_opencascade(folder.file("d.igs", text));
   ASSERT_TRUE(with_e.ok()) << with_e.status().message();
   ASSERT_TRUE(with_d.ok()) << with_d.status().message();
   const auto points = [](const Model& model) {
@@ -362,7 +363,7 @@ TEST(ReadCad, IsWhatThisProcessMakesOfTheFile) {
   const std::vector<std::filesystem::path> files = real_cad_files();
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   for (const std::filesystem::path& path : files) {
-    const Result<Model> read = read_cad(path);
+    const Result<Model> read = read_by_opencascade(path);
     if (read.status().code() == StatusCode::internal) continue;  // OpenCASCADE crashes, and would end this process
     const Result<CadFile> file = load_cad(path.string());
     const Result<Model> here = file ? model_of(*file, path.string()) : Result<Model>(file.status());

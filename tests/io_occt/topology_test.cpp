@@ -144,7 +144,7 @@ double topology_size_of(const Model& model) {
 void compare(const std::string& path) {
   const Result<CadFile> file = load_cad(path);
   ASSERT_TRUE(file.ok()) << file.status().message();
-  const Result<Model> model = read_cad(path);
+  const Result<Model> model = read_by_opencascade(path);
   ASSERT_TRUE(model.ok()) << model.status().message();
   ASSERT_TRUE(check_topology(*model).ok());
   const TopologyCounts ours = topology_counts_of(*model), theirs = topology_counts_of(file->shape);
@@ -176,7 +176,7 @@ TEST(Topology, PartsOfAnAssemblyAreReadOnce) {
   if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   for (const std::filesystem::path& path : files) {
     if (path.filename() != "as1-oc-214.stp") continue;
-    const Model model = value_of(read_cad(path));
+    const Model model = value_of(read_by_opencascade(path));
     ASSERT_EQ(model.shapes.size(), 5u);
     ASSERT_EQ(model.instances.size(), 18u);
     std::map<std::string, std::size_t> placed;
@@ -227,7 +227,7 @@ TEST(Topology, CompoundsAreOneShapeUnlessAPartRepeats) {
   const auto read = [&](const TopoDS_Shape& shape) {
     write_cad(shape, folder / "a.brep");
     compare(folder / "a.brep");
-    return value_of(read_cad(folder / "a.brep"));
+    return value_of(read_by_opencascade(folder / "a.brep"));
   };
   const Model one = read(once), three = read(twice), two = read(both);
   EXPECT_EQ(one.shapes.size(), 1u);
@@ -253,7 +253,7 @@ TEST(Topology, SolidsThatShareAFaceAreOneShape) {
   builder.Add(compound, box);
   builder.Add(compound, box.Reversed());
   write_cad(compound, folder / "a.brep");
-  const Model model = value_of(read_cad(folder / "a.brep"));
+  const Model model = value_of(read_by_opencascade(folder / "a.brep"));
   ASSERT_EQ(model.shapes.size(), 1u);
   EXPECT_EQ(model.surfaces.size(), 12u);
   for (const auto& [uses, edges] : topology_counts_of(model).by_uses) EXPECT_EQ(uses, 4u) << edges;

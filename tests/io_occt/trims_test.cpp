@@ -49,7 +49,7 @@ std::vector<Model> drilled_box() {
   std::vector<Model> models;
   for (const char* const name : {"part.step", "part.igs", "part.brep"}) {
     write_cad(part, folder / name);
-    Result<Model> model = read_cad(folder / name);
+    Result<Model> model = read_by_opencascade(folder / name);
     EXPECT_TRUE(model.ok()) << model.status().message();
     if (model) models.push_back(*std::move(model));
   }
@@ -88,7 +88,7 @@ TEST(Trims, LoopsFollowCurvesThroughRationalParameters) {
   const TopoDS_Shape drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 5, -9), gp_Dir(0, 0, 1)), 0.7, 18).Shape();
   const ScratchFolder folder;
   write_cad(BRepAlgoAPI_Cut(torus, drill).Shape(), folder / "torus.step");
-  const Result<Model> model = read_cad(folder / "torus.step");
+  const Result<Model> model = read_by_opencascade(folder / "torus.step");
   ASSERT_TRUE(model.ok()) << model.status().message();
   std::size_t checked = 0;
   for (const ModelSurface& surface : model->surfaces) {
@@ -121,7 +121,7 @@ TEST(Trims, LoopsOfRealFilesClose) {
   std::size_t loops = 0, curves = 0;
   double worst = 0;
   for (const std::filesystem::path& path : files) {
-    const Result<Model> model = read_cad(path);
+    const Result<Model> model = read_by_opencascade(path);
     if (!model) continue;
     for (const ModelSurface& surface : model->surfaces) {
       const BSplineSurface& s = std::get<BSplineSurface>(surface.surface);

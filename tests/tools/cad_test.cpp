@@ -138,14 +138,15 @@ TEST_F(CadTool, EdgesSolidsAndUnitsOfRealPartsAreTold) {
 
 TEST_F(CadTool, BrokenPartsAreRefused) {
   folder_.file("part.step", "ISO-10303-21;\nnonsense");
-  expect_failure({"info", "part.step"}, 1, "tessera: part.step: OpenCASCADE cannot read it as STEP: Line ");
+  expect_failure({"info", "part.step", "--step-reader", "opencascade"}, 1,
+                 "tessera: part.step: OpenCASCADE cannot read it as STEP: Line ");
 }
 
 #else
 
 TEST_F(CadTool, SaysWhatIsMissing) {
   folder_.file("part.step", "ISO-10303-21;");
-  expect_failure({"info", "part.step"}, 1,
+  expect_failure({"info", "part.step", "--step-reader", "opencascade"}, 1,
                  "tessera: part.step: STEP files are read by the program tessera-cad-reader, which is neither");
 }
 
@@ -159,11 +160,56 @@ TEST_F(CadTool, TheReaderIsNamedByOptionOrVariable) {
   reader("one", "exit 11");
   reader("two", "exit 12");
   const std::string named = "tessera: part.step: the CAD reader ./one ended without a greeting (exit status 11)\n";
-  EXPECT_EQ(run({"info", "part.step"}, {"TESSERA_CAD_READER=./one"}).errors, named);
-  EXPECT_EQ(run({"info", "part.step", "--cad-reader", "./one"}, {"TESSERA_CAD_READER=./two"}).errors, named);
-  expect_failure({"info", "part.step", "--cad-reader", "none"}, 1,
+  const auto info = [](std::vector<std::string> more) {
+    std::vector<std::string> words{"info", "part.step", "--step-reader", "opencascade"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  EXPECT_EQ(run(info({}), {"TESSERA_CAD_READER=./one"}).errors, named);
+  EXPECT_EQ(run(info({"--cad-reader", "./one"}), {"TESSERA_CAD_READER=./two"}).errors, named);
+  expect_failure(info({"--cad-reader", "none"}), 1,
                  "part.step: the CAD reader none cannot be started: No such file or directory");
-  expect_failure({"info", "part.step", "--cad-reader", ""}, 2, "--cad-reader: ");
+  expect_failure(info({"--cad-reader", ""}), 2, "--cad-reader: ");
+}
+
+TEST_F(CadTool, TheReaderOfStepIsChosen) {
+  folder_.file("part.step", "nonsense");
+  std::filesystem::permissions(folder_.file("reader", "#!/bin/sh\ntouch started; exit 11"),
+                               std::filesystem::perms::owner_all);
+  for (const char* const command : {"info", "tessellate", "measure", "convert"}) {
+    std::vector<std::string> words{command, "part.step", "--cad-reader", "./reader", "--step-reader", "tessera"};
+    if (command == std::string("tessellate") || command == std::string("convert"))
+      words.insert(words.end(), {"-o", command == std::string("convert") ? "a.json" : "a.ply"});
+    const ToolRun result = run(words);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.errors.rfind("tessera: part.step: ", 0), 0u) << result.errors;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "started")) << command;
+  }
+  EXPECT_EQ(run({"info", "part.step", "--cad-reader", "./reader", "--step-reader", "either"}).status, 1);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "started"));
+  expect_failure({"info", "part.step", "--step-reader", "occt"}, 2,
+                 "--step-reader: expected tessera, opencascade or either, found \"occt\"");
+  expect_failure({"info", "part.step", "--step-reader"}, 2, "--step-reader");
+}
+
+TEST_F(CadTool, PackedPartsAreHandedToTheReaderUnpacked) {
+  // Only the content reaches the reader, which says how many bytes it sees.
+  std::filesystem::permissions(folder_.file("reader", "#!/bin/sh\nwc -c < \"$2\" > seen; exit 11"),
+                               std::filesystem::perms::owner_all);
+  const std::string gz(
+      "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\x2b\xcf\x2f\x4a\x29\xe6\x02\x00\x86\xb4\xa8\xd6\x06\x00\x00\x00",
+      26);  // "words\n"
+  const std::string ended = ": the CAD reader ./reader ended without a greeting (exit status 11)\n";
+  for (const char* const name : {"a.step.gz", "a.stpz", "a.igs.gz", "a.p21"}) {
+    folder_.file(name, gz);
+    const ToolRun result = run({"info", name, "--step-reader", "opencascade", "--cad-reader", "./reader"});
+    EXPECT_EQ(result.errors, "tessera: " + std::string(name) + ended);
+    EXPECT_EQ(content_of(folder_ / "seen"), "6\n") << name;
+  }
+  folder_.file("cut.stpz", gz.substr(0, 20));
+  expect_failure({"info", "cut.stpz"}, 1, "tessera: cut.stpz: the file ends within the gzip data, after 20 bytes");
+  folder_.file("bad.stpz", "PK\3\4");
+  expect_failure({"info", "bad.stpz"}, 1, "tessera: bad.stpz: the zip archive has no end");
 }
 
 TEST_F(CadTool, AnInterruptEndsTheReader) {
@@ -171,8 +217,8 @@ TEST_F(CadTool, AnInterruptEndsTheReader) {
   std::filesystem::permissions(folder_.file("slow", "#!/bin/sh\necho $$ > pid; mv pid started; exec sleep 60"),
                                std::filesystem::perms::owner_all);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    RunningProgram tool(
-        folder_, {TESSERA_TOOL, "tessellate", "part.step", "-o", "a.ply", "--grid", "2x2", "--cad-reader", "./slow"});
+    RunningProgram tool(folder_, {TESSERA_TOOL, "tessellate", "part.step", "-o", "a.ply", "--grid", "2x2",
+                                  "--step-reader", "opencascade", "--cad-reader", "./slow"});
     const std::string started = folder_ / "started";
     for (int k = 0; k < 20000 && !std::filesystem::exists(started); ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

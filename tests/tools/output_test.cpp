@@ -81,6 +81,20 @@ TEST_F(Output, ModelsAreReadFromStandardInput) {
   EXPECT_EQ(cut.errors.rfind("tessera: standard input:", 0), 0u) << cut.errors;
 }
 
+TEST_F(Output, PartsAreReadFromStandardInput) {
+  folder_.file("part", "words\n");
+  std::filesystem::permissions(folder_.file("reader", "#!/bin/sh\ncat \"$2\" > seen; exit 11"),
+                               std::filesystem::perms::owner_all);
+  for (const char* const format : {"step", "p21", "stpz", "igs", "brep"}) {
+    const ToolRun result = run_with_input(
+        "part", {"info", "-", "--input-format", format, "--step-reader", "opencascade", "--cad-reader", "./reader"});
+    EXPECT_EQ(result.errors,
+              "tessera: standard input: the CAD reader ./reader ended without a greeting (exit status 11)\n");
+    EXPECT_EQ(content_of(folder_ / "seen"), "words\n") << format;
+    std::filesystem::remove(folder_ / "seen");
+  }
+}
+
 TEST_F(Output, StreamsNeedAFormat) {
   expect_failure({"info", "-"}, 2, "MODEL: - needs --input-format NAME");
   expect_failure({"info", "-", "-", "--input-format", "bpt"}, 2, "MODEL: - is there 2 times; give it once");

@@ -19,7 +19,7 @@ std::string cad_reader_text() {
 
 std::string version_text() {
 #ifdef TESSERA_HAS_ZLIB
-  constexpr const char* packed = "read (.obj.gz)";
+  constexpr const char* packed = "read (.obj.gz, .stpz)";
 #else
   constexpr const char* packed = "not read: built without zlib";
 #endif
@@ -42,7 +42,7 @@ void describe(Command& tool) {
       "RenderMan (.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind\n"
       "(.json; share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is "
       "skipped.\n"
-      "Files may be packed by gzip (.obj.gz).\n"
+      "Files may be packed by gzip (.obj.gz), CAD parts also by zip (.stpz).\n"
       "\nFiles written: meshes as .obj, .ply, .stl, .glb and .gltf; surfaces as .obj, .json and .bpt; pictures as "
       ".png, and "
       "as\n"

@@ -1,14 +1,25 @@
 #pragma once
-// Reads STEP, IGES and BREP files by the program tessera-cad-reader, which alone uses OpenCASCADE. The program is built
-// and installed with Tessera where OpenCASCADE is found. Where it is missing, the error names the command that builds
-// it.
+// Reads STEP, IGES and BREP files, from the disk or from memory.
+//
+// Readers: CadOptions::step_reader chooses who reads STEP.
+//
+// - Tessera's own reads STEP in this process, by the threads of the caller's TBB arena. It needs no program and no
+//   other library.
+// - OpenCASCADE's reads STEP, IGES and BREP in the program tessera-cad-reader, which alone uses OpenCASCADE. It is
+//   built and installed with Tessera where OpenCASCADE is found. Where it is missing, the error names the command that
+//   builds it.
+//
+// Packed files: a file that begins as gzip or as a zip archive does is unpacked, whatever its extension, such as .stpz,
+// .stp.gz or .igs.gz. An archive must hold one file. The unpacked size is limited as for read_model().
 //
 // Surfaces: every face becomes a B-spline or NURBS surface, in millimetres whatever the file's unit. BREP files have no
 // unit; their numbers are kept.
 //
 // - Exact up to rounding: splines and Bezier surfaces with their own points, knots and parameters (periodic ones on
 //   unclamped knots); planes, cylinders, cones, spheres, tori, surfaces of revolution and of extrusion.
-// - Fitted, with a warning that states how well: offset surfaces, and those swept along hyperbolas and offset curves.
+// - Without an exact form: offset surfaces, and those swept along hyperbolas and offset curves. OpenCASCADE's reader
+//   fits them, with a warning that states how well. Tessera's leaves out those that it can't state exactly, with a
+//   warning.
 // - Parameters are the file's, except along circles and ellipses: there they are those of rational arcs of at most 90
 //   degrees, with the angle's value at their ends.
 // - The domain is the face's rectangle of parameters, which may be a part of the knots' domain.
@@ -24,7 +35,7 @@
 //   warning.
 // - Texts are UTF-8. A file in GBK or Latin-1 is told by its bytes, with a warning.
 // - A face that can't be read is left out, and a warning says why: degrees above max_degree, an unbounded plane, input
-//   that OpenCASCADE rejects (such as weights that are not positive).
+//   that its reader rejects (such as weights that are not positive).
 // - Shapes of STEP that are not read, such as tessellations and CSG, are counted by kind: in a warning, or in the error
 //   if the file holds nothing else.
 //
@@ -39,13 +50,14 @@
 // - Tolerances are the file's, and no bounds: see edge_gaps() of topology.h.
 // - `unit` is "mm" for STEP and IGES, and empty for BREP; `file_unit` is the file's word for its unit.
 //
-// Process: OpenCASCADE may crash on damaged files and keeps global state, so each call runs the program as a child
-// process, with bounds on memory (512 MiB plus 256 times the file) and on computing time (120 seconds plus one for
-// every 20 kB). Its damage ends with it, it ends with this process, and calls from any number of threads are
-// independent.
+// Process: OpenCASCADE may crash on damaged files and keeps global state, so each call that needs it runs the program
+// as a child process, with bounds on memory (512 MiB plus 256 times the file) and on computing time (120 seconds plus
+// one for every 20 kB). Its damage ends with it, it ends with this process, and calls from any number of threads are
+// independent. Packed files and bytes in memory are handed to it as a file in memory.
 
 #include <atomic>
 #include <filesystem>
+#include <string_view>
 
 #include "tessera/model.h"
 #include "tessera/status.h"
@@ -55,13 +67,23 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// Formats of read_cad().
 enum class CadFormat {
-  by_extension,  ///< .step, .stp, .iges, .igs, .brep, .brp in any case of letters
+  by_extension,  ///< .step, .stp, .p21, .stpz, .iges, .igs, .brep, .brp in any case of letters, and these with .gz
   step,          ///< AP203, AP214 or AP242 (ISO 10303-21)
   iges,          ///< IGES 5.x in its fixed form, columns of 80 characters
   brep,          ///< OpenCASCADE's own format, as text or binary
 };
 
-/// Options of read_cad().
+/// Who reads STEP files. IGES and BREP files are always read by OpenCASCADE.
+enum class StepReader {
+  tessera,      ///< the library itself
+  opencascade,  ///< the program tessera-cad-reader
+  /// The library. If it fails or warns, the program reads the whole file, too. Its model is the result if the library
+  /// failed, or if it has more faces, or as many and fewer warnings. Without a program, or if that fails: the library's
+  /// model or error.
+  either,
+};
+
+/// Options of read_cad() and parse_cad().
 struct CadOptions {
   CadFormat format = CadFormat::by_extension;  ///< of the file, whatever its extension, unless by_extension
   /// The program that reads. If empty: the file that the environment variable TESSERA_CAD_READER names, or else the
@@ -69,21 +91,27 @@ struct CadOptions {
   /// or on PATH.
   std::filesystem::path reader = {};
   const std::atomic<bool>* cancel = nullptr;  ///< polled; the call then ends the program and returns cancelled
+  StepReader step_reader = StepReader::opencascade;
 };
 
 /// Reads a CAD file.
 ///
 /// Errors: the first warning's reason (no face is left), io_error (the file; the program cannot be started),
-/// parse_error (the reason is OpenCASCADE's), invalid_weight (IGES: OpenCASCADE would read another surface),
-/// unsupported (the extension; not a regular file; there is no program, or one of another version), out_of_memory,
-/// cancelled, internal (OpenCASCADE crashed; the program sent something else than a model).
+/// parse_error (the reason is the reader's; a packed file is damaged), invalid_weight (IGES: OpenCASCADE would read
+/// another surface), unsupported (the extension; not a regular file; there is no program, or one of another version; a
+/// packed file beyond the limits, an archive of several files, or a build without zlib), out_of_memory, cancelled,
+/// internal (OpenCASCADE crashed; the program sent something else than a model).
 ///
 /// Threads: any. Signals and other children of the process are left alone.
 Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& options = {});
+/// Reads the bytes of a CAD file, which may be packed. `name` stands for the file in messages, and its extension states
+/// the format if the options leave it open. Errors: as read_cad(), and io_error (no file in memory can be made for the
+/// program). Threads: any.
+Result<Model> parse_cad(std::string_view bytes, const std::filesystem::path& name, const CadOptions& options = {});
 /// Returns the program that read_cad() starts with these options; one that is named need not exist. Errors: unsupported
 /// (none is named or found). Threads: any.
 Result<std::filesystem::path> find_cad_reader(const CadOptions& options = {});
-/// Whether read_cad() knows the extension.
+/// Whether read_cad() knows the extension, also before .gz.
 bool is_cad_file(const std::filesystem::path& path);
 
 }}  // namespace tessera::abi_0_1

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tessera/cad.h"
 #include "tessera/mesh.h"
 #include "tessera/mesh_assembly.h"
 #include "tessera/model.h"
@@ -17,6 +18,13 @@
 
 #pragma GCC visibility push(default)
 namespace tessera { inline namespace abi_0_1 {
+
+/// How read_model() and parse_model() read.
+struct ModelReadOptions {
+  /// The extension that decides, with or without its dot, such as "step" or "bpt.gz". If empty: that of the name.
+  std::string format = {};
+  CadOptions cad = {};  ///< for files of read_cad(); CadOptions::format is left out
+};
 
 /// Reads the surfaces of a file.
 ///
@@ -26,9 +34,9 @@ namespace tessera { inline namespace abi_0_1 {
 /// - .json: surfaces of every kind; share/doc/tessera/FORMAT.md describes the format
 /// - .obj: free-form surfaces
 /// - .rib: RenderMan, Patch, PatchMesh, NuPatch and quadrics, and the archives that it reads
-/// - .step, .stp, .iges, .igs, .brep, .brp: as read_cad() of cad.h, which runs the program tessera-cad-reader
+/// - .step, .stp, .p21, .stpz, .iges, .igs, .brep, .brp: as read_cad() of cad.h
 ///
-/// Files of all formats but those of read_cad() may be gzip files, such as teapot.bpt.gz. A gzip .rib needs no
+/// Files of all formats may be gzip files, such as teapot.bpt.gz. A gzip .rib and gzip files of read_cad() need no
 /// extension .gz. The unpacked size is limited to 200 times the file plus 1 MiB, and to 1 GiB.
 ///
 /// Model::warnings reports each part of the file that is skipped. A file with a wrong element gives no model.
@@ -45,7 +53,12 @@ namespace tessera { inline namespace abi_0_1 {
 /// - .rib: 11 times for a mesh, 28 times for a Catmull-Rom mesh
 /// - .obj: up to 20 times, because an index becomes a point. A point that several pieces of a bmatrix share counts once
 ///   per piece.
-Result<Model> read_model(const std::filesystem::path& path);
+Result<Model> read_model(const std::filesystem::path& path, const ModelReadOptions& options = {});
+/// Reads the bytes of a file of any format of read_model(). `name` stands for the file in messages, and its extension
+/// states the format if the options leave it open. A .rib finds its archives beside `name`. Errors: as
+/// read_model(), without io_error but for archives and read_cad(). Memory: as read_model().
+Result<Model> parse_model(std::string_view bytes, const std::filesystem::path& name,
+                          const ModelReadOptions& options = {});
 /// Parses the text of a .bpt file; `name` stands for the file in messages. Errors: as read_model(), without io_error.
 Result<Model> parse_bpt(std::string_view text, std::string_view name);
 /// Parses the text of a .bv file: kinds 4, 5 and 8 (weights above 0). Triangles, polyhedra and PN patches are skipped.
@@ -189,6 +202,9 @@ Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions&
 /// Returns the extension of `path` with letters from A to Z made small: ".obj", or nothing if there is none. Errors:
 /// none; throws std::bad_alloc if memory runs out. Memory: the result.
 std::string lower_extension(const std::filesystem::path& path);
+/// Returns the micrometres in a unit of length: "um", "mm", "cm", "m", "km", "in", "inch" or "ft"; 0 for other words.
+/// They are whole numbers, so the quotient of two units is rounded once. Errors: none.
+double micrometres_in(std::string_view unit);
 /// Checks that write_mesh() writes the format of `path`'s extension. Errors: unsupported, with a list of those.
 Status check_mesh_format(const std::filesystem::path& path);
 /// Checks that write_model() writes the format of `path`'s extension. Errors: unsupported, with a list of those.

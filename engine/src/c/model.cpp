@@ -12,11 +12,6 @@ using namespace tessera;
 
 namespace tessera { inline namespace abi_0_1 { namespace {
 
-CStatus give_model(tsr_model** out, Result<Model>&& model) {
-  if (!model) return model.status();
-  return give(out, std::make_shared<CModel>(*std::move(model)));
-}
-
 std::span<const double> numbers(const double* data, std::size_t count) {
   return data ? std::span(data, count) : std::span<const double>();
 }
@@ -147,7 +142,9 @@ tsr_status tsr_model_read(tsr_model** model, const char* path, const tsr_run* ru
   if (model) *model = nullptr;
   return c_call([&]() -> CStatus {
     if (!model || !path) return null_pointer(model ? "path" : "model");
-    return run_work(run, [&](const Execution&) { return give_model(model, read_model(path)); });
+    return run_work(run, [&](const Execution& execution) {
+      return give_model(model, read_model(path, {.cad = {.cancel = execution.cancel}}));
+    });
   });
 }
 

@@ -25,6 +25,11 @@ struct CModel : Object {
   explicit CModel(Model of) : Object(of_kind), model(std::move(of)) {}
   Model model;
 };
+/// Sets `out` to a new handle of the model, or returns its error.
+inline CStatus give_model(tsr_model** out, Result<Model>&& model) {
+  if (!model) return model.status();
+  return give(out, std::make_shared<CModel>(*std::move(model)));
+}
 
 struct CSet : Object {
   static constexpr Kind of_kind = Kind::set;

@@ -25,10 +25,10 @@
 #include <string_view>
 
 #include "base/text.h"
+#include "io/file/memory_file.h"
 #include "io/file/text_encoding.h"
 #include "io_occt/cad_file.h"
 #include "io_occt/iges_surfaces.h"
-#include "io_occt/memory_file.h"
 #include "tessera/io.h"
 #include "tessera/status.h"
 

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <utility>
 
+#include "io/file/memory_file.h"
 #include "io_occt/cad_file.h"
-#include "io_occt/memory_file.h"
 #include "io_occt/shape_model.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"

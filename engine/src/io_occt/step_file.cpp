@@ -40,11 +40,11 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "io/file/memory_file.h"
 #include "io/file/text_encoding.h"
 #include "io/step/step_contents.h"
 #include "io/step/step_index.h"
 #include "io_occt/cad_file.h"
-#include "io_occt/memory_file.h"
 #include "io_occt/part_tree.h"
 #include "io_occt/spline_line.h"
 #include "tessera/io.h"

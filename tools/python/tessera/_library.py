@@ -1,5 +1,5 @@
-"""The C library: where it lies, and its structs and functions, declared from two tables as in tessera_c.h
-and tessera_c_queries.h."""
+"""The C library: where it lies, and its structs and functions, declared from two tables as in tessera_c.h,
+tessera_c_files.h and tessera_c_queries.h."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ _STRUCTS = {
     "tsr_out": "pointer data, size count, int64 record, int64 component",
     "tsr_bspline": "int32 degree_u, int32 degree_v, size count_u, size count_v, pointer points, pointer weights, "
     "pointer knots_u, pointer knots_v, size knot_count_u, size knot_count_v, string name",
+    "tsr_read_options": "string format, string cad_reader, int32 step_reader, int32 reserved",
     "tsr_model_info": "uint64 surfaces, uint64 shapes, uint64 instances, uint64 warnings, uint64 trimmed",
     "tsr_surface_info": "double domain[4], uint64 loops",
     "tsr_instance_info": "uint64 shape, uint64 first_surface, double placement[12], float colour[4], int32 has_colour",
@@ -86,6 +87,9 @@ _FUNCTIONS = {
     "tsr_release": "ip",
     "tsr_model_read": "ipzp",
     "tsr_model_parse": "ipzsz",
+    "tsr_read_defaults": "-p",
+    "tsr_model_read_file": "ipzpp",
+    "tsr_model_read_bytes": "ippszpp",
     "tsr_model_new": "ipps",
     "tsr_model_join": "ippd",
     "tsr_model_save": "ipz",

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Callable
-from typing import Any
+from typing import IO, Any, Union
 
 import numpy as np
 
@@ -51,20 +50,62 @@ def _fill(to: Any, spline: Spline, kept: list[Any]) -> None:
         to.name = spline.name.encode()
 
 
-def read(path: str | os.PathLike[str]) -> Model:
-    """Reads a file: .json, .step, .iges, .brep, .g2, .obj, .rib, .bpt, .bv; the extension decides."""
-    name = os.path.abspath(os.fspath(path))
+STEP_READERS = ("tessera", "opencascade", "either")
+Bytes = Union[bytes, bytearray, memoryview]
+
+
+def read(
+    source: str | os.PathLike[str] | Bytes | IO[bytes],
+    format: str | None = None,
+    step_reader: str | None = None,
+) -> Model:
+    """Reads a file, its bytes, or a file that is open for reading bytes: .json, .step, .iges, .brep, .g2, .obj, .rib,
+    .bpt, .bv, which may be packed by gzip.
+
+    ``format``: the extension that decides, "step"; if None that of the name, which bytes have not. ``step_reader``: who
+    reads STEP files, "tessera", "opencascade" (the program tessera-cad-reader) or "either" (the program where Tessera
+    fails or warns).
+
+    >>> import tessera as ts
+    >>> with open(goblet, "rb") as file:
+    ...     ts.read(file.read(), format="json")
+    <Model 1 surface: 'goblet'>
+    """
+    options = (format, step_reader)
+    if isinstance(source, (bytes, bytearray, memoryview)):
+        return _read_bytes("bytes", bytes(source), options)
+    if not isinstance(source, (str, os.PathLike)):
+        return _read_stream(source, options)
+    name = os.path.abspath(os.fspath(source))
     try:
         stamp = _stamp(name)
     except OSError:
         stamp = (0, 0)  # the library says what is wrong
-    return _model_of(name, lambda: (_read_bytes, (name, _unchanged(name, stamp))))
+    handle, given = ctypes.c_void_p(), _read_options(*options)
+    run(library.tsr_model_read_file, ctypes.byref(handle), os.fsencode(name), ctypes.byref(given), makes=handle)
+    return Model(handle, lambda: (_read_bytes, (name, _unchanged(name, stamp), options)))
 
 
-def _model_of(path: str, made_by: Callable[[], tuple[Any, ...]]) -> Model:
-    handle = ctypes.c_void_p()
-    run(library.tsr_model_read, ctypes.byref(handle), os.fsencode(path), makes=handle)
-    return Model(handle, made_by)
+def _read_stream(source: Any, options: tuple[str | None, str | None]) -> Model:
+    if not hasattr(source, "read"):
+        raise ArgumentTypeError(f"source: expected a path, bytes or a file, found {type(source).__name__}")
+    content = source.read()
+    if not isinstance(content, (bytes, bytearray, memoryview)):
+        raise ArgumentTypeError(f'source: expected a file of bytes (mode "rb"), read() returned {type(content).__name__}')
+    name = getattr(source, "name", None)
+    return _read_bytes(name if isinstance(name, str) else "bytes", bytes(content), options)
+
+
+def _read_options(format: str | None, step_reader: str | None) -> ctypes.Structure:
+    options = struct("tsr_read_options")
+    library.tsr_read_defaults(ctypes.byref(options))
+    if format is not None:
+        options.format = format.encode()
+    if step_reader is not None:
+        if step_reader not in STEP_READERS:
+            raise ArgumentError(f"step_reader: expected one of {', '.join(STEP_READERS)}, found {step_reader!r}")
+        options.step_reader = STEP_READERS.index(step_reader)
+    return options
 
 
 def _stamp(path: str) -> tuple[int, int]:
@@ -80,15 +121,19 @@ def _unchanged(path: str, stamp: tuple[int, int]) -> bytes:
         return file.read()
 
 
-def _read_bytes(name: str, content: bytes) -> Model:
-    """Reads the bytes of a file, which may lie there no longer."""
-    import tempfile  # as long to import as half of this package
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, os.path.basename(name))
-        with open(path, "wb") as file:
-            file.write(content)
-        return _model_of(path, lambda: (_read_bytes, (name, content)))
+def _read_bytes(name: str, content: bytes, options: tuple[str | None, str | None]) -> Model:
+    """Reads the bytes of a file, which may lie there no longer. The model keeps them, for pickle."""
+    handle, given = ctypes.c_void_p(), _read_options(*options)
+    run(
+        library.tsr_model_read_bytes,
+        ctypes.byref(handle),
+        content,
+        len(content),
+        os.fsencode(name),
+        ctypes.byref(given),
+        makes=handle,
+    )
+    return Model(handle, lambda: (_read_bytes, (name, content, options)))
 
 
 def parse(text: str, name: str = "text") -> Model:

@@ -12,7 +12,7 @@ from tessera import _calls, _library
 
 @pytest.fixture
 def header(sources):
-    names = ("tessera_c.h", "tessera_c_queries.h")
+    names = ("tessera_c.h", "tessera_c_files.h", "tessera_c_queries.h")
     text = "".join((sources / "engine/include/tessera" / name).read_text() for name in names)
     return re.sub(r"/\*.*?\*/", "", text, flags=re.S)
 
@@ -39,7 +39,7 @@ def test_structs_are_those_of_the_header(header, sources, tmp_path):
     if compiler is None:
         pytest.skip("there is no C compiler")
     assert set(re.findall(r"^} (tsr_\w+);", header, re.M)) == set(_library._STRUCTS)
-    lines = ['#include "tessera/tessera_c_queries.h"']
+    lines = [f'#include "tessera/tessera_c_{name}.h"' for name in ("files", "queries")]
     for name in _library._STRUCTS:
         made = _library._TYPES[name]
         lines.append(f"_Static_assert(sizeof({name}) == {ctypes.sizeof(made)}, \"{name}\");")
@@ -54,12 +54,14 @@ def test_structs_are_those_of_the_header(header, sources, tmp_path):
 
 
 def test_values_are_those_of_the_header(header):
-    from tessera import measures, patches, plans, points, rays
+    from tessera import measures, patches, plans, points, rays, sources
 
     assert "TSR_MISS = 0, TSR_HIT, TSR_INVALID_RAY" in header
     assert (rays.MISS, rays.HIT, rays.INVALID_RAY) == (0, 1, 2)
     assert "TSR_NEAREST_NONE = 0, TSR_NEAREST_FOUND, TSR_NEAREST_INVALID_POINT" in header
     assert "TSR_SIDE_OUTSIDE = 0, TSR_SIDE_INSIDE, TSR_SIDE_UNKNOWN, TSR_SIDE_INVALID_POINT" in header
+    assert "TSR_STEP_READER_TESSERA = 0, TSR_STEP_READER_OPENCASCADE, TSR_STEP_READER_EITHER" in header
+    assert sources.STEP_READERS == ("tessera", "opencascade", "either")
     assert "TSR_LIMIT_AUTOMATIC = 0, TSR_LIMIT_BELOW, TSR_LIMIT_ABOVE" in " ".join(header.split())
     values = {name: int(value) for name, value in re.findall(r"(TSR_\w+) = (\d+)", header)}
     assert values["TSR_HIT_UNCERTIFIED"] == rays._UNCERTIFIED

@@ -1,5 +1,7 @@
 """Models: where they come from, their names, shapes and points."""
 
+import gzip
+import io
 import pickle
 
 import numpy as np
@@ -107,6 +109,50 @@ def test_a_cad_file_has_shapes_at_places(tmp_path):
     assembly.save(tmp_path / "block.glb")
     model.save(tmp_path / "other.glb", tolerance=0.1)
     assert (tmp_path / "other.glb").read_bytes() == (tmp_path / "block.glb").read_bytes()
+
+
+def test_models_of_bytes_and_of_open_files(tmp_path):
+    path = model_file("goblet.json")
+    with open(path, "rb") as file:
+        content = file.read()
+    packed = gzip.compress(content)
+    wanted = ts.read(path).patches()[3].points
+    sources = [(kind(content), "json") for kind in (bytes, bytearray, memoryview, io.BytesIO)]
+    for source, format in [*sources, (packed, "json.gz"), (io.BytesIO(packed), ".json.gz")]:
+        model = ts.read(source, format=format)
+        assert (model.patches()[3].points == wanted).all()
+        assert (pickle.loads(pickle.dumps(model)).patches()[3].points == wanted).all()
+    with open(path, "rb") as file:  # its name states the format
+        assert ts.read(file).names == ["goblet"]
+    unnamed = tmp_path / "upload"
+    unnamed.write_bytes(content)
+    assert ts.read(unnamed, format=".json").names == ["goblet"]
+    with pytest.raises(ts.UnsupportedError, match='bytes: unsupported format ""'):
+        ts.read(content)
+    with pytest.raises(ts.ArgumentError, match="bytes: .*ends within"):
+        ts.read(packed[:-9], format="json.gz")
+    with pytest.raises(ts.ArgumentError, match="bytes: the file is empty"):
+        ts.read(b"", format="json")
+    with open(path, encoding="utf-8") as file, pytest.raises(TypeError, match='mode "rb".*returned str'):
+        ts.read(file)
+    with pytest.raises(TypeError, match="source: expected a path, bytes or a file, found int"):
+        ts.read(3)
+
+
+def test_the_reader_of_step_is_chosen():
+    with pytest.raises(ts.ArgumentError, match="step_reader: expected one of tessera, opencascade, either, found 'occt'"):
+        ts.read(b"ISO-10303-21;", format="step", step_reader="occt")
+    for reader in ("tessera", "opencascade", "either"):
+        with pytest.raises(ts.Error, match="bytes: "):
+            ts.read(b"ISO-10303-21;", format="step", step_reader=reader)
+    with open(model_file("bearing_block.step"), "rb") as file:
+        content = file.read()
+    try:
+        model = ts.read(gzip.compress(content), format="stpz", step_reader="opencascade")
+    except ts.UnsupportedError:
+        pytest.skip("there is no tessera-cad-reader")
+    assert model.unit == "mm" and len(model.shapes) >= 1
+    assert len(ts.read(content, format="step", step_reader="either")) == len(model)
 
 
 def test_join_and_save(tmp_path):

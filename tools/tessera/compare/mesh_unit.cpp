@@ -1,27 +1,14 @@
 #include "compare/mesh_unit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "render/mesh_distance.h"
 
 namespace tessera::cli {
 namespace {
-
-/// Units in micrometres: whole numbers, whose quotients are rounded once.
-constexpr std::array<std::pair<const char*, double>, 8> micrometres{
-    {{"um", 1}, {"mm", 1e3}, {"cm", 1e4}, {"m", 1e6}, {"km", 1e9}, {"in", 25400}, {"inch", 25400}, {"ft", 304800}}};
-
-/// 0 for a unit that is unknown.
-double micrometres_of(const std::string& unit) {
-  for (const auto& [name, length] : micrometres)
-    if (unit == name) return length;
-  return 0;
-}
 
 bool is_gltf(const std::string& file) {
   const std::string extension = lower_extension(file);
@@ -45,14 +32,14 @@ void add_mesh_unit(Command& command, MeshUnitOptions& options) {
 
 Result<MeshUnit> unit_of_mesh(const MeshUnitOptions& options, const std::string& file, const std::string& model_unit) {
   if (options.scale) return MeshUnit{"", *options.scale};
-  const double of_model = micrometres_of(model_unit);
+  const double of_model = micrometres_in(model_unit);
   if (options.unit.empty() && (of_model == 0 || !is_gltf(file))) return MeshUnit{model_unit, 1};
   if (of_model == 0)
     return Status(StatusCode::invalid_argument, "--mesh-unit: the model states " +
                                                     (model_unit.empty() ? "no unit" : "the unit " + model_unit) +
                                                     "; use --scale FACTOR");
   const std::string unit = options.unit.empty() ? "m" : options.unit;
-  return MeshUnit{unit, micrometres_of(unit) / of_model};
+  return MeshUnit{unit, micrometres_in(unit) / of_model};
 }
 
 double float_rounding(const Mesh& mesh) {

@@ -3,15 +3,17 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iterator>
 #include <mutex>
 #include <optional>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "console/output.h"
 #include "console/progress.h"
-#include "console/standard_input.h"
 #include "line/arguments.h"
 #include "tessera/cad.h"
 #include "tessera/io.h"
@@ -19,21 +21,19 @@
 namespace tessera::cli {
 namespace {
 
-/// As read_model(), and an interrupt ends the reader of CAD files.
-Result<Model> read_file_model(const std::string& path) {
-  return is_cad_file(path) ? read_cad(path, {.cancel = &interrupted()}) : read_model(path);
+/// Reads a file, or standard input. An interrupt ends the program that reads CAD files.
+Result<Model> read_any_model(const std::string& path, const LoadOptions& options) {
+  ModelReadOptions read{.format = {}, .cad = {.cancel = &interrupted(), .step_reader = options.step_reader}};
+  if (path != stream_name) return read_model(path, read);
+  constexpr std::string_view device = "/dev/stdin", name = "standard input";
+  const Result<std::string> bytes = read_file(device);
+  if (!bytes) return Status(bytes.status().code(), std::string(name) + bytes.status().message().substr(device.size()));
+  read.format = options.input_format;
+  return parse_model(*bytes, name, read);
 }
 
-/// Reads a file, or standard input, whose messages then name it instead of its copy.
-Result<Model> read_any_model(const std::string& path, const std::string& input_format) {
-  if (path != stream_name) return read_file_model(path);
-  const Result<StandardInput> input = StandardInput::make(input_format);
-  if (!input) return input.status();
-  Result<Model> model = read_file_model(input->path());
-  if (!model) return Status(model.status().code(), input->renamed(model.status().message()), model.status().index());
-  for (std::string& warning : model->warnings) warning = input->renamed(warning);
-  return model;
-}
+constexpr std::array<std::pair<const char*, StepReader>, 3> step_readers{
+    {{"tessera", StepReader::tessera}, {"opencascade", StepReader::opencascade}, {"either", StepReader::either}}};
 
 std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
   return static_cast<std::size_t>(std::count_if(surfaces.begin(), surfaces.end(),
@@ -92,7 +92,7 @@ void drop_shapes(Model& model) {
 
 /// Reads one file and adds it to `loaded`.
 Status add_file(const std::string& file, const LoadOptions& options, With with, Timings& timings, Loaded& loaded) {
-  Result<Model> model = timings.measure("read", [&] { return read_any_model(file, options.input_format); });
+  Result<Model> model = timings.measure("read", [&] { return read_any_model(file, options); });
   if (!model) return model.status();
   say_warnings(model->warnings);
   const bool has_shapes = !model->instances.empty();
@@ -126,7 +126,9 @@ void add_input_format(Command& command, LoadOptions& options) {
 
 }  // namespace
 
-std::string model_formats() { return ".bpt, .bv, .g2, .json, .obj, .rib, .step, .stp, .iges, .igs, .brep, .brp"; }
+std::string model_formats() {
+  return ".bpt, .bv, .g2, .json, .obj, .rib, .step, .stp, .p21, .stpz, .iges, .igs, .brep, .brp";
+}
 
 void add_models(Command& command, LoadOptions& options) {
   command
@@ -164,6 +166,17 @@ void add_reading(Command& command, LoadOptions& options) {
                      "Largest distance of patches from surfaces that are written as expressions, in the model's unit "
                      "[1e-6 of the surface's size]",
                      [&options](double length) { options.fit.tolerance = length; });
+  std::vector<std::string> readers;
+  for (const auto& [name, reader] : step_readers) readers.emplace_back(name);
+  const auto usual = std::ranges::find(step_readers, options.step_reader, &std::pair<const char*, StepReader>::second);
+  command.add_choice("--step-reader", readers,
+                     "Who reads STEP files: tessera itself, the CAD reader by OpenCASCADE, or the CAD reader where "
+                     "tessera fails or warns [" +
+                         std::string(usual->first) + "]",
+                     [&options](const std::string& name) {
+                       for (const auto& [known, reader] : step_readers)
+                         if (name == known) options.step_reader = reader;
+                     });
   command
       .add("--cad-reader", "FILE", "Program that reads CAD files [the tessera-cad-reader beside tessera]",
            [](const std::string& file) { ::setenv("TESSERA_CAD_READER", file.c_str(), 1); })

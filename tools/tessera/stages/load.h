@@ -6,6 +6,7 @@
 
 #include "batch/jobs.h"
 #include "console/report.h"
+#include "tessera/cad.h"
 #include "tessera/model.h"
 
 namespace tessera::cli {
@@ -14,6 +15,7 @@ struct LoadOptions {
   std::vector<std::string> files;  ///< names and patterns from the command line
   std::string input_format;        ///< of standard input, without the dot
   FitOptions fit;
+  StepReader step_reader = CadOptions().step_reader;
 };
 /// Throws UsageError if standard input has no format, or is there twice.
 void check_input(const LoadOptions& options);
@@ -23,7 +25,7 @@ void check_input_of_team(const LoadOptions& options);
 void add_models(Command& command, LoadOptions& options);
 /// Adds one MODEL and --input-format.
 void add_model(Command& command, LoadOptions& options);
-/// Adds --fit-tolerance and --cad-reader.
+/// Adds --fit-tolerance, --step-reader and --cad-reader.
 void add_reading(Command& command, LoadOptions& options);
 
 /// The extensions of files that can be read: ".bpt, .bv, ...".

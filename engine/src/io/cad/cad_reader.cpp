@@ -135,12 +135,19 @@ std::string cad_reader_greeting() {
 
 Result<Model> run_cad_reader(const CadReaderRun& run) {
   const std::string process = std::to_string(::getpid());
+  const std::string& name = run.name.empty() ? run.file : run.name;
   Result<ChildProcess> child = ChildProcess::start({run.reader, std::string(run.format), run.file, process});
   if (!child)
-    return Status(child.status().code(), run.file + ": the CAD reader " + run.reader + " " + child.status().message());
+    return Status(child.status().code(), name + ": the CAD reader " + run.reader + " " + child.status().message());
   Result<Model> model = Conversation(*std::move(child), run).model();
-  if (model || model.status().message().starts_with(run.file)) return model;
-  return Status(model.status().code(), run.file + ": " + model.status().message(), model.status().index());
+  if (model) {
+    for (std::string& warning : model->warnings)
+      if (warning.starts_with(run.file)) warning.replace(0, run.file.size(), name);
+    return model;
+  }
+  const std::string& message = model.status().message();
+  const std::string words = message.starts_with(run.file) ? message.substr(run.file.size()) : ": " + message;
+  return Status(model.status().code(), name + words, model.status().index());
 }
 
 }}  // namespace tessera::abi_0_1

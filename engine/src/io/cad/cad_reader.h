@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "tessera/cad.h"
 #include "tessera/model.h"
 #include "tessera/status.h"
 
@@ -18,11 +19,19 @@ namespace tessera { inline namespace abi_0_1 {
 
 struct CadExtension {
   std::string_view extension;  ///< ".stp"
-  std::string_view format;     ///< "STEP", the reader's first argument
+  CadFormat format;
 };
-inline constexpr std::array<CadExtension, 6> cad_extensions{
-    {{".brep", "BREP"}, {".brp", "BREP"}, {".iges", "IGES"}, {".igs", "IGES"}, {".step", "STEP"}, {".stp", "STEP"}}};
+inline constexpr std::array<CadExtension, 8> cad_extensions{{{".brep", CadFormat::brep},
+                                                             {".brp", CadFormat::brep},
+                                                             {".iges", CadFormat::iges},
+                                                             {".igs", CadFormat::iges},
+                                                             {".p21", CadFormat::step},
+                                                             {".step", CadFormat::step},
+                                                             {".stp", CadFormat::step},
+                                                             {".stpz", CadFormat::step}}};
 
+/// The format of the extension, also before .gz; by_extension if it is of no CAD file.
+CadFormat cad_format_of(const std::filesystem::path& path);
 /// ", .brep, .brp, ...": the end of a list of formats.
 std::string listed_cad_extensions();
 
@@ -50,11 +59,12 @@ struct CadReaderRun {
   std::string reader;  ///< the program
   std::string_view format;
   std::string file;
+  std::string name = {};  ///< in messages; empty: the file
   std::uint64_t file_bytes = 0;
   const std::atomic<bool>* cancel = nullptr;
   std::chrono::milliseconds startup = std::chrono::minutes(1);  ///< for the greeting, which comes before any work
 };
-/// Reads the file. Messages begin with its path. Errors: those of the file, io_error (not started), unsupported
+/// Reads the file. Messages begin with its name. Errors: those of the file, io_error (not started), unsupported
 /// (another version), out_of_memory, cancelled, internal.
 Result<Model> run_cad_reader(const CadReaderRun& run);
 

@@ -1,13 +1,12 @@
-// CAD files, by the program tessera-cad-reader.
+// CAD files, by Tessera's own reader of STEP or the program tessera-cad-reader.
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 
+#include "io/cad/cad_input.h"
 #include "io/cad/cad_reader.h"
-#include "io/file/file.h"
+#include "io/file/gzip.h"
+#include "io/step/read_step.h"
 #include "tessera/cad.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
@@ -18,61 +17,95 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The part of path.native() that path.extension() copies, which takes memory.
-std::string_view extension_of(const fs::path& path) {
-  std::string_view name = path.native();
-  name.remove_prefix(name.rfind('/') + 1);  // 0 if there is no '/'
+/// The part of a file's name that path::extension() copies, which takes memory.
+std::string_view extension_of(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   return dot == 0 || dot == std::string_view::npos ? std::string_view() : name.substr(dot);
 }
 
-/// The reader's name of the format; empty if the extension is of no CAD file.
-std::string_view format_of(const fs::path& path, CadFormat stated) {
-  if (stated == CadFormat::step) return "STEP";
-  if (stated == CadFormat::iges) return "IGES";
-  if (stated == CadFormat::brep) return "BREP";
-  const std::string_view extension = extension_of(path);
+bool is_extension(std::string_view text, std::string_view extension) {
   const auto same = [](char c, char small) { return c == small || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == small); };
-  for (const CadExtension& known : cad_extensions)
-    if (std::ranges::equal(extension, known.extension, same)) return known.format;
-  return {};
+  return std::ranges::equal(text, extension, same);
 }
 
-/// The size of the file, if it can be read.
-Result<std::uintmax_t> readable_size(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status facts = fs::status(path, error);
-  if (fs::is_directory(facts)) return Status(StatusCode::io_error, path.string() + ": is a directory, not a file");
-  // Must be a regular file, because it is read twice: a pipe would end, or block whoever opens it.
-  if (fs::exists(facts) && !fs::is_regular_file(facts))
-    return Status(StatusCode::unsupported, path.string() + ": CAD files are read from regular files only");
-  if (!std::ifstream(path, std::ios::binary)) return io_failure(path, "cannot be opened", errno);
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) return io_failure(path, "cannot be read", error.value());
-  if (size == 0) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
-  return size;
+/// The name of a format in messages, and to the program.
+std::string_view name_of(CadFormat format) {
+  if (format == CadFormat::step) return "STEP";
+  return format == CadFormat::iges ? "IGES" : "BREP";
 }
 
-Result<Model> read(const fs::path& path, const CadOptions& options) {
-  const std::string_view format = format_of(path, options.format);
-  if (format.empty())
-    return Status(StatusCode::unsupported, path.string() + ": unsupported format \"" + lower_extension(path) +
+/// Reads by the program.
+Result<Model> read_by_program(CadInput& input, CadFormat format, const CadOptions& options) {
+  const Result<std::string> reader = reader_for(options.reader, name_of(format));
+  if (!reader) return Status(reader.status().code(), input.name() + ": " + reader.status().message());
+  const Result<std::string> file = input.file();
+  if (!file) return file.status();
+  return run_cad_reader({*reader, name_of(format), *file, input.name(), input.file_bytes(), options.cancel});
+}
+
+/// Reads STEP in this process.
+Result<Model> read_by_tessera(CadInput& input, const CadOptions& options) {
+  const Result<std::string_view> text = input.bytes();
+  if (!text) return text.status();
+  return read_step(*text, input.name(), {.cancel = options.cancel});
+}
+
+/// Whether another reader may do better.
+bool may_be_improved(const Result<Model>& read) {
+  if (read) return !read->warnings.empty();
+  return read.status().code() != StatusCode::cancelled && read.status().code() != StatusCode::out_of_memory;
+}
+
+bool is_better(const Result<Model>& one, const Result<Model>& other) {
+  if (!one || !other) return one.ok();
+  const std::size_t faces = one->surfaces.size(), others = other->surfaces.size();
+  return faces > others || (faces == others && one->warnings.size() < other->warnings.size());
+}
+
+Result<Model> read(CadInput& input, CadFormat format, const CadOptions& options) {
+  if (format != CadFormat::step || options.step_reader == StepReader::opencascade)
+    return read_by_program(input, format, options);
+  Result<Model> own = read_by_tessera(input, options);
+  if (options.step_reader == StepReader::tessera || !may_be_improved(own)) return own;
+  Result<Model> other = read_by_program(input, format, options);
+  const bool is_cancelled = !other && other.status().code() == StatusCode::cancelled;
+  return is_cancelled || is_better(other, own) ? std::move(other) : std::move(own);
+}
+
+/// Reads what `open` opens, a file of this name.
+template <class Open>
+Result<Model> read(const fs::path& name, const CadOptions& options, const Open& open) {
+  const CadFormat format = options.format == CadFormat::by_extension ? cad_format_of(name) : options.format;
+  if (format == CadFormat::by_extension)
+    return Status(StatusCode::unsupported, name.string() + ": unsupported format \"" + lower_extension(name) +
                                                "\": CAD files are read as " + listed_cad_extensions().substr(2));
-  const Result<std::uintmax_t> size = readable_size(path);
-  if (!size) return size.status();
-  const Result<std::string> reader = reader_for(options.reader, format);
-  if (!reader) return Status(reader.status().code(), path.string() + ": " + reader.status().message());
-  Result<Model> model = run_cad_reader({*reader, format, path.string(), *size, options.cancel});
-  if (model) model->name = path.stem().string();
+  Result<CadInput> input = open();
+  if (!input) return input.status();
+  Result<Model> model = read(*input, format, options);
+  if (model) model->name = without_gz(name).stem().string();
   return model;
 }
 
 }  // namespace
 
-bool is_cad_file(const fs::path& path) { return !format_of(path, CadFormat::by_extension).empty(); }
+CadFormat cad_format_of(const fs::path& path) {
+  std::string_view name = path.native();
+  name.remove_prefix(name.rfind('/') + 1);  // 0 if there is no '/'
+  std::string_view extension = extension_of(name);
+  if (is_extension(extension, ".gz")) extension = extension_of(name.substr(0, name.size() - extension.size()));
+  for (const CadExtension& known : cad_extensions)
+    if (is_extension(extension, known.extension)) return known.format;
+  return CadFormat::by_extension;
+}
+
+bool is_cad_file(const fs::path& path) { return cad_format_of(path) != CadFormat::by_extension; }
 
 Result<Model> read_cad(const fs::path& path, const CadOptions& options) {
-  return guarded([&] { return read(path, options); });
+  return guarded([&] { return read(path, options, [&] { return CadInput::open(path); }); });
+}
+
+Result<Model> parse_cad(std::string_view bytes, const fs::path& name, const CadOptions& options) {
+  return guarded([&] { return read(name, options, [&] { return CadInput::memory(bytes, name); }); });
 }
 
 }}  // namespace tessera::abi_0_1

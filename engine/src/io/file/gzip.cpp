@@ -22,8 +22,10 @@ constexpr std::string_view magic = "\x1f\x8b";
 
 bool is_gzip(const std::filesystem::path& path, std::string_view bytes) {
   const std::string extension = lower_extension(path);
-  return extension == ".gz" || (extension == ".rib" && bytes.starts_with(magic));
+  return extension == ".gz" || (extension == ".rib" && begins_as_gzip(bytes));
 }
+
+bool begins_as_gzip(std::string_view bytes) { return bytes.starts_with(magic); }
 
 std::filesystem::path without_gz(const std::filesystem::path& path) {
   return lower_extension(path) == ".gz" ? path.parent_path() / path.stem() : path;
@@ -33,10 +35,18 @@ std::filesystem::path without_gz(const std::filesystem::path& path) {
 
 namespace {
 
+struct Wrapping {
+  int window_bits;   ///< as inflateInit2() takes them, for windows of any size
+  const char* what;  ///< in messages
+  bool has_members;  ///< further ones may follow
+};
+constexpr Wrapping gzip_members{15 + 16, "the gzip data", true}, bare_stream{-15, "the deflated data", false};
+
 /// Runs zlib over all members of a file. Either counts the bytes, through a small window, or writes them.
 class Unpacker {
  public:
-  Unpacker(std::string_view bytes, std::string_view name) : bytes_(bytes), name_(name) {}
+  Unpacker(std::string_view bytes, std::string_view name, const Wrapping& wrapping)
+      : bytes_(bytes), name_(name), wrapping_(wrapping) {}
 
   /// Returns the number of unpacked bytes, `limit` at the most.
   Result<std::size_t> count(std::size_t limit) {
@@ -67,14 +77,13 @@ class Unpacker {
 
   template <class RoomAt>
   Result<std::size_t> run(const RoomAt& room_at, std::size_t limit) {
-    constexpr int gzip_only = 15 + 16;  // windows of any size, and gzip's header
     Stream stream;
-    if (inflateInit2(&stream, gzip_only) != Z_OK)
+    if (inflateInit2(&stream, wrapping_.window_bits) != Z_OK)
       return Status(StatusCode::out_of_memory, std::string(name_) + ": no memory for zlib");
     std::size_t taken = 0, done = 0;
     for (bool ended = false; !ended || taken < bytes_.size();) {
-      if (ended && !bytes_.substr(taken).starts_with(magic))
-        return error(counted(bytes_.size() - taken, "byte") + " follow the end of the gzip data");
+      if (ended && !(wrapping_.has_members && begins_as_gzip(bytes_.substr(taken))))
+        return error(counted(bytes_.size() - taken, "byte") + " follow the end of " + wrapping_.what);
       if (ended) inflateReset(&stream);
       const Room room = room_at(done);
       const std::size_t in = taken;
@@ -84,10 +93,11 @@ class Unpacker {
       ended = result == Z_STREAM_END;
       if (result == Z_MEM_ERROR) return Status(StatusCode::out_of_memory, std::string(name_) + ": no memory for zlib");
       if (result != Z_OK && result != Z_BUF_ERROR && !ended)
-        return error("the gzip data is damaged near byte " + std::to_string(taken) + " of " +
+        return error(std::string(wrapping_.what) + " is damaged near byte " + std::to_string(taken) + " of " +
                      std::to_string(bytes_.size()) + (stream.msg ? ": " + std::string(stream.msg) : ""));
       if (!ended && taken == bytes_.size() && (in == taken && out == done))
-        return error("the file ends within the gzip data, after " + counted(bytes_.size(), "byte"));
+        return error("the file ends within " + std::string(wrapping_.what) + ", after " +
+                     counted(bytes_.size(), "byte"));
     }
     return done;
   }
@@ -117,7 +127,21 @@ class Unpacker {
   }
 
   std::string_view bytes_, name_;
+  Wrapping wrapping_;
 };
+
+Result<std::string> unpack(std::string_view bytes, std::string_view name, const Wrapping& wrapping) {
+  const std::size_t limit = bytes.size() > gzip_limit / gzip_ratio
+                                ? gzip_limit
+                                : std::min(gzip_limit, gzip_ratio * bytes.size() + gzip_slack);
+  const Result<std::size_t> size = Unpacker(bytes, name, wrapping).count(limit);
+  if (!size) return size.status();
+  if (*size == 0) return Status(StatusCode::parse_error, std::string(name) + ": the file is empty");
+  std::string text(*size, '\0');
+  const Result<std::size_t> written = Unpacker(bytes, name, wrapping).write(text);
+  if (!written) return written.status();
+  return text;
+}
 
 }  // namespace
 
@@ -126,16 +150,11 @@ Result<std::string> unpack_gzip(std::string_view bytes, std::string_view name) {
     return Status(StatusCode::parse_error, std::string(name) + ": expected gzip data, found " +
                                                quote(bytes.substr(0, 8)) +
                                                "; remove .gz from the name if the file is not packed");
-  const std::size_t limit = bytes.size() > gzip_limit / gzip_ratio
-                                ? gzip_limit
-                                : std::min(gzip_limit, gzip_ratio * bytes.size() + gzip_slack);
-  const Result<std::size_t> size = Unpacker(bytes, name).count(limit);
-  if (!size) return size.status();
-  if (*size == 0) return Status(StatusCode::parse_error, std::string(name) + ": the file is empty");
-  std::string text(*size, '\0');
-  const Result<std::size_t> written = Unpacker(bytes, name).write(text);
-  if (!written) return written.status();
-  return text;
+  return unpack(bytes, name, gzip_members);
+}
+
+Result<std::string> unpack_deflated(std::string_view bytes, std::string_view name) {
+  return unpack(bytes, name, bare_stream);
 }
 
 #else
@@ -145,6 +164,8 @@ Result<std::string> unpack_gzip(std::string_view, std::string_view name) {
                                              ": packed files need a Tessera that was built with zlib (zlib1g-dev); "
                                              "unpack the file first (gunzip)");
 }
+
+Result<std::string> unpack_deflated(std::string_view bytes, std::string_view name) { return unpack_gzip(bytes, name); }
 
 #endif
 

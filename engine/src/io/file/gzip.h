@@ -17,6 +17,9 @@ inline constexpr std::size_t gzip_ratio = 200, gzip_slack = std::size_t{1} << 20
 /// extension, and begins as gzip does.
 bool is_gzip(const std::filesystem::path& path, std::string_view bytes);
 
+/// Whether the bytes begin as gzip does.
+bool begins_as_gzip(std::string_view bytes);
+
 /// `path` without the extension .gz, if it has it.
 std::filesystem::path without_gz(const std::filesystem::path& path);
 
@@ -24,5 +27,8 @@ std::filesystem::path without_gz(const std::filesystem::path& path);
 /// gzip, cut, damaged, bytes after the end, nothing inside), unsupported (beyond the limits; no zlib). Memory: the
 /// unpacked bytes, which are counted before any are kept.
 Result<std::string> unpack_gzip(std::string_view bytes, std::string_view name);
+
+/// Unpacks data that is deflated (RFC 1951) without a header. Errors and memory: as unpack_gzip().
+Result<std::string> unpack_deflated(std::string_view bytes, std::string_view name);
 
 }}  // namespace tessera::abi_0_1

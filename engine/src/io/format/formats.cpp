@@ -46,7 +46,8 @@ constexpr std::array<Format, 10> formats{{
     {.extension = ".gltf", .read_mesh = parse_gltf, .write_mesh = write_gltf, .write_assembly = write_gltf_assembly},
 }};
 
-constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written";
+constexpr std::string_view mesh_writers = "meshes are written", model_writers = "surfaces are written",
+                           model_readers = "surfaces are read";
 
 /// The format of this extension, if it has the ability `member`; otherwise an error for the file `path` that lists the
 /// formats that have it.
@@ -64,20 +65,49 @@ Result<const Format*> find_format(const fs::path& path, const std::string& exten
                 path.string() + ": unsupported format \"" + extension + "\": " + std::string(what) + " as " + able);
 }
 
-/// The content of the file, unpacked if it is packed. A file that cannot be opened is reported before an unknown
-/// format.
+/// The content of the file, unpacked if it is packed. `as`: a file name that states the format. A file that cannot be
+/// opened is reported before an unknown format.
 template <class Content, class Ability, class... Options>
-Result<Content> read_as(const fs::path& path, Ability Format::*member, std::string_view what,
+Result<Content> read_as(const fs::path& path, const fs::path& as, Ability Format::*member, std::string_view what,
                         const Options&... options) {
-  const Result<const Format*> format = find_format(path, lower_extension(without_gz(path)), member, what);
+  const Result<const Format*> format = find_format(path, lower_extension(without_gz(as)), member, what);
   std::error_code error;
   if (!format && fs::exists(path, error) && !fs::is_directory(path, error)) return format.status();
   Result<std::string> bytes = read_file(path);
   if (!bytes) return bytes.status();
   if (!format) return format.status();
-  if (is_gzip(path, *bytes)) bytes = unpack_gzip(*bytes, path.string());
+  if (is_gzip(as, *bytes)) bytes = unpack_gzip(*bytes, path.string());
   if (!bytes) return bytes.status();
   return ((*format)->*member)(*bytes, path.string(), options...);
+}
+
+/// The model in these bytes, unpacked if they are packed.
+Result<Model> parse_as(std::string_view bytes, const std::string& name, const fs::path& as) {
+  const Result<const Format*> format =
+      find_format(name, lower_extension(without_gz(as)), &Format::read_model, model_readers);
+  if (!format) return format.status();
+  if (bytes.empty()) return Status(StatusCode::parse_error, name + ": the file is empty");
+  if (!is_gzip(as, bytes)) return (*format)->read_model(bytes, name);
+  const Result<std::string> unpacked = unpack_gzip(bytes, name);
+  return unpacked ? (*format)->read_model(*unpacked, name) : unpacked.status();
+}
+
+/// A file name whose extension states the format.
+fs::path named_by_format(const fs::path& name, const std::string& format) {
+  if (format.empty()) return name;
+  return (format.starts_with('.') ? "model" : "model.") + format;
+}
+
+/// Reads a model by one of two functions, which take a file name that states the format.
+template <class Cad, class Other>
+Result<Model> read_model(const fs::path& name, const ModelReadOptions& options, const Cad& cad, const Other& other) {
+  const fs::path as = named_by_format(name, options.format);
+  CadOptions stated = options.cad;
+  stated.format = cad_format_of(as);
+  if (stated.format != CadFormat::by_extension) return cad(stated);
+  Result<Model> model = other(as);
+  if (model) model->name = without_gz(name).stem().string();
+  return model;
 }
 
 Status in_output(const fs::path& path, const Status& status) {
@@ -120,18 +150,24 @@ Result<SurfaceWriter> surface_writer(const fs::path& path) {
   return SurfaceWriter{(*format)->write_model};
 }
 
-Result<Model> read_model(const fs::path& path) {
-  return guarded([&]() -> Result<Model> {
-    if (is_cad_file(path)) return read_cad(path);
-    Result<Model> model = read_as<Model>(path, &Format::read_model, "surfaces are read");
-    if (!model) return model;
-    model->name = without_gz(path).stem().string();
-    return model;
+Result<Model> read_model(const fs::path& path, const ModelReadOptions& options) {
+  return guarded([&] {
+    return read_model(
+        path, options, [&](const CadOptions& cad) { return read_cad(path, cad); },
+        [&](const fs::path& as) { return read_as<Model>(path, as, &Format::read_model, model_readers); });
+  });
+}
+
+Result<Model> parse_model(std::string_view bytes, const fs::path& name, const ModelReadOptions& options) {
+  return guarded([&] {
+    return read_model(
+        name, options, [&](const CadOptions& cad) { return parse_cad(bytes, name, cad); },
+        [&](const fs::path& as) { return parse_as(bytes, name.string(), as); });
   });
 }
 
 Result<Mesh> read_mesh(const fs::path& path, const MeshReadOptions& options) {
-  return guarded([&] { return read_as<Mesh>(path, &Format::read_mesh, "meshes are read", options); });
+  return guarded([&] { return read_as<Mesh>(path, path, &Format::read_mesh, "meshes are read", options); });
 }
 
 Status write_mesh(const Mesh& mesh, const fs::path& path, OutputFile& out, const MeshWriteOptions& options) {

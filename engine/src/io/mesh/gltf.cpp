@@ -164,13 +164,7 @@ bool needs_preparation(const MeshAssembly& assembly) {
 }
 
 /// The metres of a unit, 1 if it is empty; 0 for unknown ones.
-double metres(const std::string& unit) {
-  static const std::map<std::string, double> units{{"", 1},        {"um", 1e-6},     {"mm", 1e-3},
-                                                   {"cm", 1e-2},   {"m", 1},         {"km", 1e3},
-                                                   {"in", 0.0254}, {"inch", 0.0254}, {"ft", 0.3048}};
-  const auto known = units.find(unit);
-  return known == units.end() ? 0 : known->second;
-}
+double metres(const std::string& unit) { return unit.empty() ? 1 : micrometres_in(unit) / micrometres_in("m"); }
 
 /// Adds all shapes that have instances with triangles, each once, and a node for each instance.
 class AssemblyContent {

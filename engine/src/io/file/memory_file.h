@@ -9,7 +9,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// A file in memory. path() can be opened during the object's lifetime.
+/// A file in memory. path() can be opened during the object's lifetime, also by child processes.
 class MemoryFile {
  public:
   MemoryFile() = default;  ///< no file

@@ -1,4 +1,4 @@
-#include "io_occt/memory_file.h"
+#include "io/file/memory_file.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ Result<MemoryFile> MemoryFile::make(std::string_view bytes, const std::string& o
     if (sent < 0 && errno != EINTR) return io_failure(original, "cannot be copied", errno);
     bytes.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
   }
-  file.path_ = "/proc/self/fd/" + std::to_string(file.copy_.number());
+  file.path_ = "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file.copy_.number());
   return file;
 }
 

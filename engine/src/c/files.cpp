@@ -1,0 +1,67 @@
+// Models of files and of bytes, with options, of the C interface.
+
+#include "c/objects.h"
+#include "tessera/io.h"
+#include "tessera/tessera_c_files.h"
+
+using namespace tessera;
+
+namespace tessera { inline namespace abi_0_1 { namespace {
+
+CStatus wanted_options(const tsr_read_options* given, const Execution& execution, ModelReadOptions& out) {
+  tsr_read_options own;
+  tsr_read_defaults(&own);
+  if (CStatus status = read_struct("tsr_read_options", given, own); status.code) return status;
+  if (CStatus status = check_member("tsr_read_options", "step_reader", own.step_reader, TSR_STEP_READER_EITHER);
+      status.code)
+    return status;
+  if (own.format) out.format = own.format;
+  if (own.cad_reader) out.cad.reader = own.cad_reader;
+  out.cad.step_reader = static_cast<StepReader>(own.step_reader);
+  out.cad.cancel = execution.cancel;
+  return {};
+}
+
+/// Reads a model with these options.
+template <class Read>
+CStatus give_read(tsr_model** out, const tsr_read_options* options, const tsr_run* run, const Read& read) {
+  return run_work(run, [&](const Execution& execution) -> CStatus {
+    ModelReadOptions wanted;
+    if (CStatus status = wanted_options(options, execution, wanted); status.code) return status;
+    return give_model(out, read(wanted));
+  });
+}
+
+}}}  // namespace tessera::abi_0_1
+
+extern "C" {
+
+void tsr_read_defaults(tsr_read_options* options) {
+  if (!options) return;
+  *options = {};
+  options->struct_size = sizeof *options;
+  options->step_reader = static_cast<std::int32_t>(CadOptions().step_reader);
+}
+
+tsr_status tsr_model_read_file(tsr_model** model, const char* path, const tsr_read_options* options,
+                               const tsr_run* run) {
+  if (model) *model = nullptr;
+  return c_call([&]() -> CStatus {
+    if (!model || !path) return null_pointer(model ? "path" : "model");
+    return give_read(model, options, run, [&](const ModelReadOptions& wanted) { return read_model(path, wanted); });
+  });
+}
+
+tsr_status tsr_model_read_bytes(tsr_model** model, const void* bytes, size_t size, const char* name,
+                                const tsr_read_options* options, const tsr_run* run) {
+  if (model) *model = nullptr;
+  return c_call([&]() -> CStatus {
+    if (!model || !bytes) return null_pointer(model ? "bytes" : "model");
+    const std::string_view content(static_cast<const char*>(bytes), size);
+    return give_read(model, options, run, [&](const ModelReadOptions& wanted) {
+      return parse_model(content, name ? name : "bytes", wanted);
+    });
+  });
+}
+
+}  // extern "C"
