@@ -101,6 +101,8 @@ TEST(StepTreeErrors, OfCyclesAreRemarks) {
   EXPECT_EQ(mapped.places.size(), 2u);
   expect_remark(mapped, "#110 MAPPED_ITEM in line");
   EXPECT_EQ(tree_of(shape_text(1, {910, 921, 100}) + mapped_text(100, 1, 910, 911)).places.size(), 1u);
+  EXPECT_EQ(
+      tree_of(shape_text(1, {910, 921, 100}) + shape_text(2, {922}) + mapped_text(100, 1, 910, 911)).places.size(), 1u);
 }
 
 /// Assemblies 0 to `levels`, each of two of the next one; the last has the shape #1.

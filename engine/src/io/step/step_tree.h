@@ -19,8 +19,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Items that stand together at each of their places: those of a representation, and of the others that plain
-/// relationships tie to it, as far as they have its units.
+/// Items that stand together at each of their places: those of a representation, of the others that plain relationships
+/// tie to it, and of all shapes of one product, as far as they have the same units. None occurs twice.
 struct StepPart {
   std::uint64_t representation = 0;  ///< the first one; a colour of it is that of all items without their own
   /// Solids, shells, faces, surface models and sets, and whatever else is neither a placement nor a mapped item: kinds

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <unordered_set>
 #include <utility>
 
@@ -56,7 +57,8 @@ void merge(const StepWhole& from, StepWhole& into) {
     std::vector<std::uint64_t>& items = part_with(into, part).items;
     items.insert(items.end(), part.items.begin(), part.items.end());
   }
-  into.uses.insert(into.uses.end(), from.uses.begin(), from.uses.end());
+  std::ranges::copy_if(from.uses, std::back_inserter(into.uses),
+                       [](const StepUse& use) { return use.whole != StepUse::nowhere; });
 }
 
 }  // namespace
