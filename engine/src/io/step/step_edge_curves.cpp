@@ -9,6 +9,7 @@
 #include "io/exact/curve_foot.h"
 #include "io/step/step_curves.h"
 #include "io/step/step_splines.h"
+#include "tessera/convert.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -21,8 +22,14 @@ Result<Curve> curve_of(const SplineLine& line, const std::optional<Interval>& ra
                               : Curve::nurbs(line.degree, line.points, line.weights, line.knots, part);
 }
 
-/// A closed clamped spline twice, one round after the other.
-SplineLine twice(const SplineLine& line) {
+/// The part of a closed spline from one parameter to another, at most a period later, across its ends.
+Result<Curve> across_ends(const Curve& closed, double from, double to) {
+  const Result<Curve> clamped = clamp_ends(closed);
+  if (!clamped) return clamped.status();
+  SplineLine line{clamped->degree(), {}, {}, {}, clamped->domain(), {}, 0};
+  line.knots.assign(clamped->knots().begin(), clamped->knots().end());
+  line.points.assign(clamped->points().begin(), clamped->points().end());
+  line.weights.assign(clamped->weights().begin(), clamped->weights().end());
   SplineLine out = line;
   const double period = line.range.to - line.range.from;
   const auto order = static_cast<std::ptrdiff_t>(line.degree) + 1;
@@ -33,13 +40,7 @@ SplineLine twice(const SplineLine& line) {
     const double scale = line.weights.back() / line.weights.front();
     for (std::size_t k = 1; k < line.weights.size(); ++k) out.weights.push_back(scale * line.weights[k]);
   }
-  out.range.to += period;
-  return out;
-}
-
-bool is_clamped(const SplineLine& line) {
-  const auto p = static_cast<std::size_t>(line.degree);
-  return line.knots[0] == line.knots[p] && line.knots[line.knots.size() - 1] == line.knots[line.knots.size() - 1 - p];
+  return curve_of(out, Interval{from, to});
 }
 
 /// Where points lie on a spline: at an end that is near enough, or else at the nearest point.
@@ -151,14 +152,14 @@ Result<StepEdgeCurve> StepCurves::spline_edge(StepEntity& entity, std::array<Vec
   const Interval d = whole->domain();
   if (length(ends[1] - ends[0]) <= 1e-3 * tolerance && feet.is_closed()) {
     const double seam = feet.start(ends[0]);
-    if (seam == d.from || seam == d.to || !is_clamped(*line)) return made(*whole, !agrees);
-    return made(curve_of(twice(*line), Interval{seam, seam + (d.to - d.from)}), !agrees);
+    if (seam == d.from || seam == d.to) return made(*whole, !agrees);
+    return made(across_ends(*whole, seam, seam + (d.to - d.from)), !agrees);
   }
   const double from = feet.start(ends[0]), to = feet.end(ends[1]);
   if (from < to) return made(curve_of(*line, Interval{from, to}), !agrees);
-  if (feet.is_closed() && is_clamped(*line)) {
+  if (feet.is_closed()) {
     if (from == to) return made(*whole, !agrees);
-    return made(curve_of(twice(*line), Interval{from, to + (d.to - d.from)}), !agrees);
+    return made(across_ends(*whole, from, to + (d.to - d.from)), !agrees);
   }
   if (from == to) return entity.error("its edge is a point: both vertices are at one place of it");
   return made(curve_of(*line, Interval{to, from}), agrees);  // the file errs about the direction

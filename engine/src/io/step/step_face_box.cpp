@@ -19,29 +19,65 @@ struct Extent {
   void extend(const Extent& other) { from = std::min(from, other.from), to = std::max(to, other.to); }
 };
 
-/// The extent of samples, and of the parabolas through three that follow each other: between samples, the curve may go
-/// a little farther.
-Extent extent_of(const EdgeTrace& piece, Along along) {
-  Extent out;
-  const auto value = [&](std::size_t k) { return of(piece.samples[k].place, along); };
-  for (std::size_t k = 0; k < piece.samples.size(); ++k) {
-    const double x = value(k);
-    out.extend(x);
-    if (k == 0 || k + 1 == piece.samples.size()) continue;
-    const double a = value(k - 1), b = value(k + 1), bend = a - 2 * x + b, rise = b - a;
-    constexpr double reach = 1.25;  // in steps from the middle: samples may be uneven
-    if (!(std::abs(rise) <= 2 * reach * std::abs(bend)) || bend == 0) continue;
-    const double beyond = -rise * rise / (8 * bend), margin = std::copysign(0.02 * std::abs(bend), -bend);
-    out.extend(x + beyond + margin);
-  }
-  return out;
-}
+/// Finds how far the loops of a face reach along one parameter.
+class ExtentFinder {
+ public:
+  ExtentFinder(const SurfaceInverse& inverse, std::span<const BrepEdge> edges, Along along, double tolerance)
+      : inverse_(inverse), edges_(edges), along_(along), tolerance_(tolerance) {}
 
-Extent extent_of(const LoopTrace& loop, Along along) {
-  Extent out;
-  for (const EdgeTrace& piece : loop.pieces) out.extend(extent_of(piece, along));
-  return out;
-}
+  Extent find(const LoopTrace& loop) const {
+    Extent out;
+    for (const EdgeTrace& piece : loop.pieces) out.extend(find(piece));
+    return out;
+  }
+
+ private:
+  struct Place {
+    double s, value;
+  };
+
+  Extent find(const EdgeTrace& piece) const {
+    const auto constant = constant_parameter(inverse_, piece, along_ == Along::u, tolerance_);
+    if (constant) return {*constant, *constant};
+    Extent out;
+    for (const TraceSample& sample : piece.samples) out.extend(of(sample.place, along_));
+    if (piece.edge == no_id) return out;
+    const FastCurve curve(*edges_[piece.edge].curve);
+    for (std::size_t k = 1; k + 1 < piece.samples.size(); ++k) {
+      const auto place = [&](std::size_t at) { return Place{piece.samples[at].s, of(piece.samples[at].place, along_)}; };
+      if (const auto extreme = refined(curve, piece.samples[k].place, {place(k - 1), place(k), place(k + 1)}))
+        out.extend(*extreme);
+    }
+    return out;
+  }
+
+  /// Goes to the extreme of parabolas through three places, until it rests; nothing if it is not between them.
+  std::optional<double> refined(const FastCurve& curve, const ParameterPoint& near, std::array<Place, 3> p) const {
+    const double low = std::min(p[0].s, p[2].s), high = std::max(p[0].s, p[2].s);
+    std::optional<double> out;
+    for (int step = 0; step < 8; ++step) {
+      const double a = p[0].s - p[1].s, b = p[2].s - p[1].s, fa = p[0].value - p[1].value, fb = p[2].value - p[1].value;
+      const double denominator = 2 * (fa * b - fb * a);
+      const double vertex = p[1].s + (fa * b * b - fb * a * a) / denominator;
+      if (!(vertex > low && vertex < high)) return out;  // or no parabola
+      const double value = of(inverse_.at(curve.point(vertex), near), along_);
+      const double change = std::abs(value - p[1].value);
+      out = value;
+      if (change <= 1e-12 * std::abs(value) || vertex == p[0].s || vertex == p[1].s || vertex == p[2].s) break;
+      // The new place replaces the one that is farthest from it.
+      const auto far = [&](const Place& one) { return std::abs(one.s - vertex); };
+      std::size_t farthest = far(p[0]) > far(p[2]) ? 0 : 2;
+      p[farthest] = p[1];
+      p[1] = {vertex, value};
+    }
+    return out;
+  }
+
+  const SurfaceInverse& inverse_;
+  std::span<const BrepEdge> edges_;
+  Along along_;
+  double tolerance_;
+};
 
 void shift(LoopTrace& loop, Along along, double by) {
   for (EdgeTrace& piece : loop.pieces)
@@ -72,10 +108,10 @@ class RangeFinder {
     last_ = along == Along::u ? whole.u1 : whole.v1;
   }
 
-  Extent find(std::span<const ParameterPoint> vertices) {
+  Extent find(std::span<const ParameterPoint> vertices, const ExtentFinder& finder) {
     if (loops_.empty()) return {first_, last_};
     std::vector<Extent> extents;
-    for (const LoopTrace& loop : loops_) extents.push_back(extent_of(loop, along_));
+    for (const LoopTrace& loop : loops_) extents.push_back(finder.find(loop));
     const std::size_t outer = widest(extents);
     Extent out = extents[outer];
     if (period_ > 0) {
@@ -152,6 +188,16 @@ void move_into_surface(const SurfaceInverse& inverse, std::vector<LoopTrace>& lo
   if (!turns && range.to > range.last + tolerance) range.from = range.first, range.to = range.last;
 }
 
+/// The largest of some speeds in a rectangle, so that a step of the tolerance is nowhere much longer.
+ParameterPoint largest_speeds(const SurfaceInverse& inverse, const Domain& box) {
+  ParameterPoint out;
+  for (int k = 0; k < 9; ++k) {
+    const ParameterPoint there = inverse.speeds({box.u_at(k % 3 / 2.0), box.v_at(k / 3 / 2.0)});
+    out = {std::max(out.u, there.u), std::max(out.v, there.v)};
+  }
+  return out;
+}
+
 bool is_unbounded(const FreeRange& range) { return !std::isfinite(range.to - range.from); }
 
 }  // namespace
@@ -168,20 +214,21 @@ bool keep_outside(const SurfaceInverse& inverse, std::span<const LoopTrace> loop
   });
 }
 
-Result<FaceBox> step_face_box(const SurfaceInverse& inverse, std::vector<LoopTrace>& loops,
+Result<FaceBox> step_face_box(const SurfaceInverse& inverse, std::span<const BrepEdge> edges,
+                              std::vector<LoopTrace>& loops,
                               std::span<const ParameterPoint> vertices, bool agrees, double tolerance) {
   const bool is_whole = keep_outside(inverse, loops, agrees);
   const Domain& whole = inverse.whole();
   FreeRange u{0, 0, whole.u0, whole.u1, inverse.period().u, 0, {}},
       v{0, 0, whole.v0, whole.v1, inverse.period().v, 0, {}};
-  Extent in_u = RangeFinder(inverse, loops, Along::u, agrees).find(vertices);
-  Extent in_v = RangeFinder(inverse, loops, Along::v, agrees).find(vertices);
+  Extent in_u = RangeFinder(inverse, loops, Along::u, agrees).find(vertices, {inverse, edges, Along::u, 1e-3 * tolerance});
+  Extent in_v = RangeFinder(inverse, loops, Along::v, agrees).find(vertices, {inverse, edges, Along::v, 1e-3 * tolerance});
   if (is_whole) in_u = {whole.u0, whole.u1}, in_v = {whole.v0, whole.v1};
   u.from = in_u.from, u.to = in_u.to, v.from = in_v.from, v.to = in_v.to;
   std::array<std::vector<double>, 2> knots = inverse.knots();
   u.knots = std::move(knots[0]), v.knots = std::move(knots[1]);
   if (is_unbounded(u) || is_unbounded(v)) return Status(StatusCode::unsupported, "it has no bounds");
-  const ParameterPoint speeds = inverse.speeds({0.5 * (u.from + u.to), 0.5 * (v.from + v.to)});
+  const ParameterPoint speeds = largest_speeds(inverse, {u.from, u.to, v.from, v.to});
   u.length_tolerance = speeds.u > 0 ? tolerance / speeds.u : 0;
   v.length_tolerance = speeds.v > 0 ? tolerance / speeds.v : 0;
   for (FreeRange* const side : {&u, &v}) {

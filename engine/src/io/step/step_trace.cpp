@@ -28,6 +28,17 @@ std::vector<double> trace_parameters(const Curve& curve) {
 
 }  // namespace
 
+std::optional<double> constant_parameter(const SurfaceInverse& inverse, const EdgeTrace& piece, bool along_u,
+                                         double tolerance) {
+  const auto of = [&](const ParameterPoint& p) { return along_u ? p.u : p.v; };
+  double low = of(piece.first()), high = low, speed = 0;
+  for (const TraceSample& sample : piece.samples) {
+    low = std::min(low, of(sample.place)), high = std::max(high, of(sample.place));
+    speed = std::max(speed, of(inverse.speeds(sample.place)));
+  }
+  return (high - low) * speed <= 2 * tolerance ? std::optional(0.5 * (low + high)) : std::nullopt;
+}
+
 /// Appends a place, and others before it where the parameters move far.
 void EdgeTracer::follow(const FastCurve& curve, double to, std::vector<TraceSample>& samples, int depth) const {
   constexpr int max_depth = 8;

@@ -31,6 +31,10 @@ struct EdgeTrace {
   const ParameterPoint& last() const { return samples.back().place; }
 };
 
+/// Returns the parameter u (or v) that an edge has all along, up to a length; nothing if it has none.
+std::optional<double> constant_parameter(const SurfaceInverse& inverse, const EdgeTrace& piece, bool along_u,
+                                         double tolerance);
+
 /// A loop of a face.
 struct LoopTrace {
   bool is_outer = false;

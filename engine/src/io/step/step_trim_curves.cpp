@@ -64,14 +64,9 @@ ParameterPoint TrimCurveMaker::near(const EdgeTrace& piece, double s) const {
 
 /// Whether a parameter is the same all along, up to the tolerance; `value`: then a side of the box that is near.
 bool TrimCurveMaker::is_constant(const EdgeTrace& piece, bool along_u, double& value) const {
-  const auto of = [&](const ParameterPoint& p) { return along_u ? p.u : p.v; };
-  double low = of(piece.first()), high = low, speed = 0;
-  for (const TraceSample& sample : piece.samples) {
-    low = std::min(low, of(sample.place)), high = std::max(high, of(sample.place));
-    speed = std::max(speed, of(inverse_.speeds(sample.place)));
-  }
-  value = 0.5 * (low + high);
-  if (!((high - low) * speed <= 2 * tolerance_)) return false;
+  const std::optional<double> constant = constant_parameter(inverse_, piece, along_u, tolerance_);
+  if (!constant) return false;
+  value = *constant;
   const Domain& d = box_.domain;
   const double snap = along_u ? box_.tolerance_u : box_.tolerance_v;
   for (const double side : along_u ? std::array{d.u0, d.u1} : std::array{d.v0, d.v1})
@@ -187,6 +182,21 @@ Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, 
   return std::move(fit).curve();
 }
 
+/// Moves what a curve has beyond the box, by less than the tolerance, onto its sides: the trim would cut it off, and
+/// what is cut off meets no other face along the edge.
+Result<Curve> TrimCurveMaker::kept_inside(const Curve& curve) const {
+  const Domain& d = box_.domain;
+  const auto moved = [](double t, double from, double to, double tolerance) {
+    const double inside = std::clamp(t, from, to);
+    return std::abs(t - inside) <= tolerance ? inside : t;
+  };
+  const auto map = [&](const Vec3& p) {
+    return Vec3{moved(p.x, d.u0, d.u1, box_.tolerance_u), moved(p.y, d.v0, d.v1, box_.tolerance_v), 0};
+  };
+  const bool is_inside = std::ranges::all_of(curve.points(), [&](const Vec3& p) { return map(p) == p; });
+  return is_inside ? curve : mapped_curve(curve, false, map);
+}
+
 Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge) const {
   if (edge == nullptr) {
     const ParameterPoint a = ours(piece.first()), b = ours(piece.last());
@@ -205,7 +215,9 @@ Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* e
 
 Status TrimCurveMaker::append(const EdgeTrace& piece, const BrepEdge* edge, TrimLoop& loop) const {
   Coedge coedge{piece.edge, piece.reversed, {}};
-  Result<Curve> made = curve_of(piece, edge, coedge);
+  const Result<Curve> whole = curve_of(piece, edge, coedge);
+  if (!whole) return whole.status();
+  Result<Curve> made = kept_inside(*whole);
   if (!made) return made.status();
   loop.curves.push_back(*std::move(made));
   loop.coedges.push_back(std::move(coedge));

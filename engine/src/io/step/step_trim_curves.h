@@ -41,6 +41,7 @@ class TrimCurveMaker {
                          Coedge& coedge) const;
   Result<Curve> fitted(const EdgeTrace& piece, const Curve& edge, const double* constant_u,
                        const double* constant_v) const;
+  Result<Curve> kept_inside(const Curve& curve) const;
   std::vector<double> crossings(const EdgeTrace& piece, const Curve& edge, bool along_u) const;
 
   const SurfaceInverse& inverse_;
