@@ -46,9 +46,12 @@ class ElementaryInverse : public SurfaceInverse {
       case StepElementaryKind::cylinder:
         return {angle_about_z(local, near.u), local.z};
       case StepElementaryKind::cone: {
-        const double v = local.z / std::cos(of_.half_angle);
-        if (of_.radius + v * std::sin(of_.half_angle) < 0) local = -local;  // beyond the apex
-        return {angle_about_z(local, near.u), v};
+        // The nearest point of the line that turns about the axis, or of its part beyond the apex.
+        const double s = std::sin(of_.half_angle), c = std::cos(of_.half_angle);
+        const double v = (ring - of_.radius) * s + local.z * c, beyond = (-ring - of_.radius) * s + local.z * c;
+        const auto off = [&](double at) { return std::abs((at - of_.radius) * c - local.z * s); };
+        if (off(-ring) >= off(ring)) return {angle_about_z(local, near.u), v};
+        return {angle_about_z({-local.x, -local.y, local.z}, near.u), beyond};
       }
       case StepElementaryKind::sphere:
         return {angle_about_z(local, near.u), std::atan2(local.z, ring)};
