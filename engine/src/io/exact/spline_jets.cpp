@@ -1,102 +1,107 @@
 #include "io/exact/spline_jets.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <span>
+#include <array>
 
 #include "tessera/bezier_patch.h"
 
 namespace tessera { inline namespace abi_0_1 {
-namespace {
 
-/// The basis functions that are not zero at a parameter, and their derivatives.
-struct Basis {
-  std::size_t first = 0;  ///< of the first function
-  std::array<double, max_degree + 1> values, slopes;  ///< as many as the degree and one; the rest is not set
-};
-
-/// Cox and de Boor's recurrence (Piegl and Tiller, The NURBS Book, 2nd ed., algorithms A2.1 to A2.3).
-void evaluate_basis(std::span<const double> knots, int degree, double t, Basis& out) {
-  const auto p = static_cast<std::size_t>(degree), last = knots.size() - p - 1;
-  const auto above = std::upper_bound(knots.begin() + degree + 1, knots.begin() + static_cast<std::ptrdiff_t>(last), t);
-  std::size_t span = static_cast<std::size_t>(above - knots.begin()) - 1;
-  while (span > p && knots[span] == knots[span + 1]) --span;  // at the end of a domain before a multiple knot
-  out.first = span - p;
-  std::array<double, max_degree + 1> left, right, lower;  // not set: this is the innermost of all searches
-  out.values[0] = 1;
-  for (std::size_t j = 1; j <= p; ++j) {
-    left[j] = t - knots[span + 1 - j];
-    right[j] = knots[span + j] - t;
-    if (j == p) std::copy_n(out.values.begin(), p, lower.begin());
-    double saved = 0;
-    for (std::size_t r = 0; r < j; ++r) {
-      const double share = out.values[r] / (right[r + 1] + left[j - r]);
-      out.values[r] = saved + right[r + 1] * share;
-      saved = left[j - r] * share;
-    }
-    out.values[j] = saved;
-  }
-  // The derivative is p (N[i] / (t[i+p] - t[i]) - N[i+1] / (t[i+p+1] - t[i+1])) of the degree below.
-  double before = 0;
-  for (std::size_t r = 0; r <= p; ++r) {
-    double share = 0;
-    if (r < p) share = static_cast<double>(degree) * lower[r] / (knots[span + 1 + r] - knots[span + 1 + r - p]);
-    out.slopes[r] = before - share;
-    before = share;
-  }
+FastBasis::FastBasis(std::span<const double> knots, int degree, double from, double to)
+    : knots_(knots), degree_(static_cast<std::size_t>(degree)), from_(from), to_(to) {
+  const std::size_t spans = knots.size() - 2 * degree_ - 1;
+  reciprocals_.reserve(spans * degree_ * (degree_ + 1) / 2);
+  for (std::size_t span = degree_; span < degree_ + spans; ++span)
+    for (std::size_t j = 1; j <= degree_; ++j)
+      for (std::size_t r = 0; r < j; ++r) {
+        const double width = knots[span + r + 1] - knots[span + 1 + r - j];
+        reciprocals_.push_back(width > 0 ? 1 / width : 0);
+      }
 }
 
-}  // namespace
+std::size_t FastBasis::span_of(double t) const {
+  const std::size_t last = knots_.size() - degree_ - 1;
+  const auto begin = knots_.begin() + static_cast<std::ptrdiff_t>(degree_) + 1;
+  const auto above = std::upper_bound(begin, knots_.begin() + static_cast<std::ptrdiff_t>(last), t);
+  std::size_t span = static_cast<std::size_t>(above - knots_.begin()) - 1;
+  while (span > degree_ && knots_[span] == knots_[span + 1]) --span;  // the end of the knots
+  return span;
+}
 
-FastCurve::FastCurve(const Curve& curve) : curve_(curve) {}
+/// Cox and de Boor's recurrence (Piegl and Tiller, The NURBS Book, 2nd ed., algorithms A2.1 to A2.3).
+std::size_t FastBasis::evaluate(double t, double* values, double* slopes) const {
+  t = std::clamp(t, from_, to_);
+  const std::size_t p = degree_, span = span_of(t);
+  const double* reciprocal = reciprocals_.data() + (span - p) * (p * (p + 1) / 2);
+  const double* const knots = knots_.data() + span;
+  values[0] = 1;
+  for (std::size_t j = 1; j <= p; ++j) {
+    // The derivative is p times the differences of the functions of the degree below, over their widths.
+    double saved = 0, before = 0;
+    const bool is_last = j == p;
+    for (std::size_t r = 0; r < j; ++r, ++reciprocal) {
+      const double share = values[r] * *reciprocal;
+      values[r] = saved + (knots[r + 1] - t) * share;
+      saved = (t - knots[static_cast<std::ptrdiff_t>(r) + 1 - static_cast<std::ptrdiff_t>(j)]) * share;
+      if (is_last) slopes[r] = static_cast<double>(p) * (before - share), before = share;
+    }
+    values[j] = saved;
+    if (is_last) slopes[p] = static_cast<double>(p) * before;
+  }
+  return span - p;
+}
+
+FastCurve::FastCurve(const Curve& curve)
+    : curve_(curve), basis_(curve_.knots(), curve_.degree(), curve_.domain().from, curve_.domain().to) {}
 
 CurvePlace FastCurve::operator()(double t) const {
-  const Interval d = curve_.domain();
-  Basis basis;
-  evaluate_basis(curve_.knots(), curve_.degree(), std::clamp(t, d.from, d.to), basis);
+  std::array<double, max_degree + 1> values, slopes;
+  const std::size_t first = basis_.evaluate(t, values.data(), slopes.data());
   const auto p = static_cast<std::size_t>(curve_.degree());
+  const Vec3* const points = curve_.points().data() + first;
+  const double* const weights = curve_.is_rational() ? curve_.weights().data() + first : nullptr;
   CurvePlace out;
   double weight = 0, slope = 0;
   for (std::size_t k = 0; k <= p; ++k) {
-    const std::size_t i = basis.first + k;
-    const double w = curve_.weight(i);
-    out.point += (w * basis.values[k]) * curve_.points()[i];
-    out.slope += (w * basis.slopes[k]) * curve_.points()[i];
-    weight += w * basis.values[k], slope += w * basis.slopes[k];
+    const double w = weights ? weights[k] : 1, a = w * values[k], b = w * slopes[k];
+    out.point += a * points[k], out.slope += b * points[k];
+    weight += a, slope += b;
   }
-  if (!curve_.is_rational()) return out;
+  if (!weights) return out;
   out.point = (1 / weight) * out.point;
   out.slope = (1 / weight) * (out.slope - slope * out.point);
   return out;
 }
 
-FastSurface::FastSurface(const BSplineSurface& surface) : surface_(surface) {}
+FastSurface::FastSurface(const BSplineSurface& surface)
+    : surface_(surface),
+      in_u_(surface_.knots_u(), surface_.degree_u(), surface_.domain().u0, surface_.domain().u1),
+      in_v_(surface_.knots_v(), surface_.degree_v(), surface_.domain().v0, surface_.domain().v1) {}
 
 SurfacePlace FastSurface::operator()(double u, double v) const {
-  const Domain& d = surface_.domain();
-  Basis in_u, in_v;
-  evaluate_basis(surface_.knots_u(), surface_.degree_u(), std::clamp(u, d.u0, d.u1), in_u);
-  evaluate_basis(surface_.knots_v(), surface_.degree_v(), std::clamp(v, d.v0, d.v1), in_v);
+  std::array<double, max_degree + 1> values_u, slopes_u, values_v, slopes_v;
+  const std::size_t first_u = in_u_.evaluate(u, values_u.data(), slopes_u.data());
+  const std::size_t first_v = in_v_.evaluate(v, values_v.data(), slopes_v.data());
   const auto p = static_cast<std::size_t>(surface_.degree_u()), q = static_cast<std::size_t>(surface_.degree_v());
   const std::size_t row = surface_.count_v();
   const bool is_rational = surface_.is_rational();
   SurfacePlace out;
   double weight = 0, weight_u = 0, weight_v = 0;
   for (std::size_t i = 0; i <= p; ++i) {
-    const std::size_t begin = (in_u.first + i) * row + in_v.first;
+    const std::size_t begin = (first_u + i) * row + first_v;
     const Vec3* const points = surface_.points().data() + begin;
     const double* const weights = is_rational ? surface_.weights().data() + begin : nullptr;
     Vec3 value, slope;
     double w = 0, w_slope = 0;
     for (std::size_t j = 0; j <= q; ++j) {
-      const double scale = weights ? weights[j] : 1, a = scale * in_v.values[j], b = scale * in_v.slopes[j];
+      const double scale = weights ? weights[j] : 1, a = scale * values_v[j], b = scale * slopes_v[j];
       value += a * points[j], slope += b * points[j];
       w += a, w_slope += b;
     }
-    out.point += in_u.values[i] * value;
-    out.du += in_u.slopes[i] * value;
-    out.dv += in_u.values[i] * slope;
-    weight += in_u.values[i] * w, weight_u += in_u.slopes[i] * w, weight_v += in_u.values[i] * w_slope;
+    out.point += values_u[i] * value;
+    out.du += slopes_u[i] * value;
+    out.dv += values_u[i] * slope;
+    weight += values_u[i] * w, weight_u += slopes_u[i] * w, weight_v += values_u[i] * w_slope;
   }
   if (!is_rational) return out;
   out.point = (1 / weight) * out.point;

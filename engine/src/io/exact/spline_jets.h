@@ -1,7 +1,8 @@
 #pragma once
 // Points and first derivatives of spline curves and surfaces, fast: for searches that evaluate many places.
 
-#include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "tessera/curve.h"
@@ -20,7 +21,26 @@ struct SurfacePlace {
   Vec3 point, du, dv;
 };
 
-/// Evaluates a curve. Keeps the curve's arrays alive. Parameters outside of the domain are moved to its ends.
+/// The basis functions of one direction of a spline, with the reciprocals that their recurrence needs.
+class FastBasis {
+ public:
+  /// The knots must outlive the object.
+  FastBasis(std::span<const double> knots, int degree, double from, double to);
+
+  /// Writes the degree + 1 functions that are not zero at t, and their derivatives; moves t into [from, to]. Returns
+  /// the index of the first.
+  std::size_t evaluate(double t, double* values, double* slopes) const;
+
+ private:
+  std::size_t span_of(double t) const;
+
+  std::span<const double> knots_;
+  std::size_t degree_;
+  double from_, to_;
+  std::vector<double> reciprocals_;  ///< degree (degree + 1) / 2 for each span
+};
+
+/// Evaluates a curve.
 class FastCurve {
  public:
   explicit FastCurve(const Curve& curve);
@@ -30,17 +50,18 @@ class FastCurve {
 
  private:
   Curve curve_;
+  FastBasis basis_;
 };
 
-/// Evaluates a surface. Parameters outside of the domain are moved to its sides.
+/// Evaluates a surface.
 class FastSurface {
  public:
   explicit FastSurface(const BSplineSurface& surface);
   SurfacePlace operator()(double u, double v) const;
-  const BSplineSurface& surface() const { return surface_; }
 
  private:
   BSplineSurface surface_;
+  FastBasis in_u_, in_v_;
 };
 
 }}  // namespace tessera::abi_0_1

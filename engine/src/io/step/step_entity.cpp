@@ -146,6 +146,15 @@ std::vector<double> StepEntity::reals(std::size_t at) {
   return out;
 }
 
+std::size_t StepEntity::reals(std::size_t at, std::span<double> out) {
+  if (!status_.ok()) return 0;
+  if (kind_of(at) != StepKind::list) return unexpected(at, "a list"), 0;
+  std::size_t count = 0;
+  for (std::size_t k = at + 1; k < record_[at].end; k = record_[k].end, ++count)
+    if (count < out.size()) out[count] = real(k);
+  return count;
+}
+
 std::vector<std::uint64_t> StepEntity::references(std::size_t at) {
   std::vector<std::uint64_t> out;
   for (const std::size_t k : list(at)) out.push_back(reference(k));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,8 @@ class StepEntity {
   std::string_view string(std::size_t at);                ///< as it is in the file: see step_text(); empty if left out
   std::uint64_t reference(std::size_t at);                ///< to an instance of the file
   std::vector<double> reals(std::size_t at);              ///< a list
+  /// Reads a list of numbers, as many as fit into `out`. Returns how many it has.
+  std::size_t reals(std::size_t at, std::span<double> out);
   std::vector<std::uint64_t> references(std::size_t at);  ///< a list
 
  private:

@@ -19,6 +19,8 @@ double angle_near(double angle, double near) {
   return angle + turn_of_inverse * std::round((near - angle) / turn_of_inverse);
 }
 
+double distance_from_z(const Vec3& p) { return std::sqrt(p.x * p.x + p.y * p.y); }
+
 /// The angle of a point about z, or `near` on the axis.
 double angle_about_z(const Vec3& local, double near) {
   if (local.x == 0 && local.y == 0) return near;
@@ -39,7 +41,7 @@ class ElementaryInverse : public SurfaceInverse {
 
   ParameterPoint at(const Vec3& p, const ParameterPoint& near) const override {
     Vec3 local = of_.frame.local(p);
-    const double ring = std::hypot(local.x, local.y);
+    const double ring = distance_from_z(local);
     switch (of_.kind) {
       case StepElementaryKind::plane:
         return {local.x, local.y};
@@ -156,7 +158,7 @@ class SweptInverse : public SurfaceInverse {
   ParameterPoint speeds(const ParameterPoint& place) const override {
     const CurvePlace jet = fast_(wrapped(sweep_.is_turned ? place.v : place.u));
     if (!sweep_.is_turned) return {length(jet.slope), 1};
-    return {std::hypot(jet.point.x, jet.point.y), length(jet.slope)};
+    return {distance_from_z(jet.point), length(jet.slope)};
   }
 
   Result<FaceSurface> surface(const Domain& box) const override {
@@ -185,7 +187,7 @@ class SweptInverse : public SurfaceInverse {
       const Vec3& d = sweep_.direction;
       return {jet.point - dot(jet.point, d) * d, jet.slope - dot(jet.slope, d) * d};
     }
-    const double ring = std::hypot(jet.point.x, jet.point.y);
+    const double ring = distance_from_z(jet.point);
     const double slope = ring > 0 ? (jet.point.x * jet.slope.x + jet.point.y * jet.slope.y) / ring
                                   : std::hypot(jet.slope.x, jet.slope.y);
     return {{ring, 0, jet.point.z}, {slope, 0, jet.slope.z}};
@@ -193,7 +195,7 @@ class SweptInverse : public SurfaceInverse {
 
   ParameterPoint places(const Vec3& p, const ParameterPoint* near) const {
     const Vec3 local = sweep_.is_turned ? sweep_.frame.local(p) : p;
-    const Vec3 goal = sweep_.is_turned ? Vec3{std::hypot(local.x, local.y), 0, local.z}
+    const Vec3 goal = sweep_.is_turned ? Vec3{distance_from_z(local), 0, local.z}
                                        : p - dot(p, sweep_.direction) * sweep_.direction;
     const double t = parameter(goal, near ? std::optional(sweep_.is_turned ? near->v : near->u) : std::nullopt);
     const Vec3 there = fast_.point(wrapped(t));

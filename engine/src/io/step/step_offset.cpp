@@ -75,6 +75,7 @@ Result<FaceSurface> offset_by(const BSplineSurface& of, double distance, double 
   if (!surface) return surface.status();
   FitOptions options;
   options.tolerance = tolerance;
+  options.degree = 6;
   options.max_patches = 1U << 12;
   options.breaks_u = corners(of.knots_u(), of.degree_u(), d.u0, d.u1);
   options.breaks_v = corners(of.knots_v(), of.degree_v(), d.v0, d.v1);

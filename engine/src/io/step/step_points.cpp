@@ -1,5 +1,6 @@
 #include "io/step/step_points.h"
 
+#include <array>
 #include <cmath>
 
 #include "base/text.h"
@@ -22,10 +23,11 @@ Frame frame_about(const Vec3& origin, const Vec3& z, const Vec3& x) {
 
 /// Reads the coordinates of an entity that was read already.
 Vec3 coordinates(StepEntity& entity, int dimension) {
-  const std::vector<double> c = entity.reals(entity.attribute(1));
-  if (c.size() != static_cast<std::size_t>(dimension))
+  std::array<double, 3> c{};
+  const std::size_t count = entity.reals(entity.attribute(1), c);
+  if (count != static_cast<std::size_t>(dimension))
     entity.fail("expected " + counted(static_cast<std::size_t>(dimension), "coordinate") + ", found " +
-                std::to_string(c.size()));
+                std::to_string(count));
   return entity.status().ok() ? Vec3{c[0], c[1], dimension == 3 ? c[2] : 0} : Vec3{};
 }
 

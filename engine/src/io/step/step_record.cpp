@@ -60,7 +60,33 @@ std::size_t read_atom(std::string_view text, std::size_t at, StepValue& value) {
   return static_cast<std::size_t>(last - text.data());
 }
 
+/// Memory of records that are gone, by thread.
+struct RecordMemory {
+  std::vector<StepValue> values;
+  std::vector<std::uint32_t> open;
+};
+std::vector<RecordMemory>& record_memory() {
+  thread_local std::vector<RecordMemory> memory;
+  return memory;
+}
+constexpr std::size_t most_records_kept = 32, most_values_kept = 4096;
+
 }  // namespace
+
+StepRecord::StepRecord() {
+  std::vector<RecordMemory>& kept = record_memory();
+  if (kept.empty()) return;
+  values_.swap(kept.back().values);
+  open_.swap(kept.back().open);
+  kept.pop_back();
+}
+
+StepRecord::~StepRecord() {
+  std::vector<RecordMemory>& kept = record_memory();
+  if (kept.capacity() == 0) kept.reserve(most_records_kept);
+  if (kept.size() < most_records_kept && values_.capacity() <= most_values_kept)
+    kept.push_back({std::move(values_), std::move(open_)});
+}
 
 /// Takes "(" or "KIND(". Returns false if the parenthesis is missing.
 bool StepRecord::open_value(std::string_view text, std::size_t& at) {

@@ -36,6 +36,12 @@ struct StepValue {
 /// The values of a record, one after the other.
 class StepRecord {
  public:
+  /// Takes memory that records of this thread have given back, if there is any.
+  StepRecord();
+  ~StepRecord();
+  StepRecord(const StepRecord&) = delete;
+  StepRecord& operator=(const StepRecord&) = delete;
+
   /// Reads a record, "KIND(..)" or "(A(..)B(..))": the first value is typed, or there is one typed value for each kind.
   /// The text must outlive the values; memory is reused. Errors: parse_error (index = the place in the text).
   Status read(std::string_view text);

@@ -142,13 +142,15 @@ class SplineInverse : public SurfaceInverse {
       for (int half = 0; half < 6 && !better; ++half, share *= 0.5) {
         const ParameterPoint next = inside({foot.place.u + share * move.u, foot.place.v + share * move.v});
         if (next == foot.place) return foot;
+        const double step_u = std::abs(next.u - foot.place.u) / (d.u1 - d.u0);
+        const double step_v = std::abs(next.v - foot.place.v) / (d.v1 - d.v0);
+        if (half == 0 && std::max(step_u, step_v) <= 1e-8) return {next, foot.distance};  // the rest is below rounding
         const SurfacePlace jet_there = at_(next.u, next.v);
         const double distance = length(jet_there.point - p);
         if (!(distance < foot.distance)) continue;
         better = true, foot = {next, distance}, there = jet_there;
       }
-      const double rest = std::max(std::abs(move.u) / (d.u1 - d.u0), std::abs(move.v) / (d.v1 - d.v0));
-      if (!better || share * rest <= 1e-10) break;  // the next step is smaller by orders
+      if (!better) break;
     }
     return foot;
   }

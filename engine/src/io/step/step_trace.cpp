@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "convert/fit/lobatto_fit.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
@@ -17,11 +19,16 @@ std::vector<double> trace_parameters(const Curve& curve) {
   breaks.push_back(d.to);
   const std::size_t spans = breaks.size() - 1;
   const bool is_straight = curve.degree() == 1 && !curve.is_rational();
-  const std::size_t each = is_straight ? (spans > 4 ? 2 : 4) : spans > 16 ? 2 : spans > 2 ? 4 : 8;
+  const std::size_t each = is_straight ? (spans > 4 ? 2 : 4) : spans > 16 ? 2 : 4;
+  // A fit over one or two spans takes its places from here.
+  const std::vector<double>& nodes = LobattoTables::of_degree_7().nodes;
+  const bool is_short = !is_straight && spans <= 2;
   std::vector<double> out;
   for (std::size_t k = 0; k < spans; ++k)
-    for (std::size_t i = 0; i < each; ++i)
-      out.push_back(breaks[k] + static_cast<double>(i) / static_cast<double>(each) * (breaks[k + 1] - breaks[k]));
+    for (std::size_t i = 0; i < (is_short ? nodes.size() - 1 : each); ++i) {
+      const double x = is_short ? nodes[i] : static_cast<double>(i) / static_cast<double>(each);
+      out.push_back(breaks[k] + x * (breaks[k + 1] - breaks[k]));
+    }
   out.push_back(d.to);
   return out;
 }

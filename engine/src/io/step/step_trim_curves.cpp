@@ -50,16 +50,33 @@ ParameterPoint TrimCurveMaker::ours(const ParameterPoint& theirs) const {
   return {our(true, theirs.u), our(false, theirs.v)};
 }
 
-/// Places between two samples.
+/// The place of the sample at a parameter, or nullptr if there is none.
+const ParameterPoint* TrimCurveMaker::sampled(const EdgeTrace& piece, double s, double rounding) const {
+  const auto before = [&](const TraceSample& sample, double value) {
+    return piece.reversed ? sample.s > value + rounding : sample.s < value - rounding;
+  };
+  const auto found = std::lower_bound(piece.samples.begin(), piece.samples.end(), s, before);
+  return found != piece.samples.end() && std::abs(found->s - s) <= rounding ? &found->place : nullptr;
+}
+
+/// What the cubic through the four nearest samples says.
 ParameterPoint TrimCurveMaker::near(const EdgeTrace& piece, double s) const {
   const auto before = [&](const TraceSample& sample, double value) {
     return piece.reversed ? sample.s > value : sample.s < value;
   };
   const auto& samples = piece.samples;
-  auto next = std::lower_bound(samples.begin() + 1, samples.end() - 1, s, before);
-  const TraceSample &a = *(next - 1), &b = *next;
-  const double x = a.s == b.s ? 0 : std::clamp((s - a.s) / (b.s - a.s), 0.0, 1.0);
-  return {a.place.u + x * (b.place.u - a.place.u), a.place.v + x * (b.place.v - a.place.v)};
+  const auto next = static_cast<std::size_t>(
+      std::lower_bound(samples.begin() + 1, samples.end() - 1, s, before) - samples.begin());
+  const std::size_t count = std::min<std::size_t>(4, samples.size());
+  const std::size_t first = std::min(next < 2 ? 0 : next - 2, samples.size() - count);
+  ParameterPoint out;
+  for (std::size_t i = first; i < first + count; ++i) {
+    double share = 1;
+    for (std::size_t k = first; k < first + count; ++k)
+      if (k != i) share *= (s - samples[k].s) / (samples[i].s - samples[k].s);
+    out.u += share * samples[i].place.u, out.v += share * samples[i].place.v;
+  }
+  return out;
 }
 
 /// Whether a parameter is the same all along, up to the tolerance; `value`: then a side of the box that is near.
@@ -154,10 +171,9 @@ Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, 
   }
   const auto at = [&](double t, const Vec3&) {
     const double s = parameter(t);
-    ParameterPoint place = near(piece, s);
-    // At a pole, the trace knows to which parameter the edge tends.
-    const bool at_pole = (piece.starts_at_pole && t == d.from) || (piece.ends_at_pole && t == d.to);
-    if (!at_pole) place = inverse_.at(at_edge.point(s), place);
+    // At a pole, only the trace knows to which parameter the edge tends.
+    const ParameterPoint* const known = sampled(piece, s, 1e-14 * (d.to - d.from));
+    ParameterPoint place = known ? *known : inverse_.at(at_edge.point(s), near(piece, s));
     if (constant_u) place.u = *constant_u;
     if (constant_v) place.v = *constant_v;
     const ParameterPoint out = ours(place);

@@ -33,6 +33,7 @@ class TrimCurveMaker {
   Result<Curve> curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge) const;
   ParameterPoint ours(const ParameterPoint& theirs) const;
   double our(bool along_u, double theirs) const;
+  const ParameterPoint* sampled(const EdgeTrace& piece, double s, double rounding) const;
   ParameterPoint near(const EdgeTrace& piece, double s) const;
   bool is_constant(const EdgeTrace& piece, bool along_u, double& value) const;
   bool is_linear(const EdgeTrace& piece, bool along_u) const;
