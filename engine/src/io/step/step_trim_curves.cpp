@@ -39,6 +39,29 @@ bool is_line_or_conic(const Curve& edge) {
   return (edge.degree() == 1 && edge.points().size() == 2) || (edge.degree() == 2 && edge.is_rational());
 }
 
+/// A parameter, and the value of a function there.
+struct Valued {
+  double s, value;
+};
+/// Finds where a function is zero, between parameters at which it has different signs, by false position with halved
+/// weights (the Illinois method; Dowell and Jarratt 1971). Ends after 60 steps.
+template <class Function>
+double root_between(Valued a, Valued b, const Function& f) {
+  const double tiny = 1e-15 * std::abs(b.s - a.s);
+  for (int step = 0; step < 60 && a.value != b.value && std::abs(b.s - a.s) > tiny; ++step) {
+    Valued c{b.s - b.value * (b.s - a.s) / (b.value - a.value), 0};
+    c.value = f(c.s);
+    if (c.value == 0) return c.s;
+    if (std::abs(c.s - b.s) <= tiny) return c.s;
+    if ((c.value < 0) == (b.value < 0))
+      a.value *= 0.5;
+    else
+      a = b;
+    b = c;
+  }
+  return b.s;
+}
+
 }  // namespace
 
 double TrimCurveMaker::our(bool along_u, double theirs) const {
@@ -109,7 +132,7 @@ Result<Curve> TrimCurveMaker::on_plane(const EdgeTrace& piece, const Curve& edge
   });
 }
 
-/// Edge parameters at which the surface's arcs meet, found by halving intervals between samples.
+/// Edge parameters at which the surface's arcs meet, found between samples.
 std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curve& edge, bool along_u) const {
   std::vector<double> out;
   const std::optional<Arcs>& arcs = along_u ? parameters_.u : parameters_.v;
@@ -125,12 +148,7 @@ std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curv
     const double step = arcs->step(), first = std::ceil((std::min(x, y) - arcs->from()) / step);
     for (double n = first; arcs->from() + n * step < std::max(x, y); ++n) {
       const double goal = arcs->from() + n * step;
-      double low = a.s, high = b.s;
-      for (int half = 0; half < 50; ++half) {
-        const double middle = 0.5 * (low + high);
-        ((value(middle) < goal) == (x < y) ? low : high) = middle;
-      }
-      out.push_back(0.5 * (low + high));
+      out.push_back(root_between({a.s, x - goal}, {b.s, y - goal}, [&](double s) { return value(s) - goal; }));
     }
   }
   return out;
