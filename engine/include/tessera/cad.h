@@ -91,7 +91,7 @@ struct CadOptions {
   /// or on PATH.
   std::filesystem::path reader = {};
   const std::atomic<bool>* cancel = nullptr;  ///< polled; the call then ends the program and returns cancelled
-  StepReader step_reader = StepReader::opencascade;
+  StepReader step_reader = StepReader::tessera;
 };
 
 /// Reads a CAD file.
