@@ -1,5 +1,6 @@
 #include "io/step/read_step.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "io/step/step_index.h"
 #include "io/step/step_shape.h"
 #include "io/step/step_tree.h"
+#include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
@@ -21,19 +23,42 @@ namespace {
 class StepModel {
  public:
   StepModel(const StepIndex& index, const StepTree& tree, const std::string& name, const Execution& execution)
-      : index_(index), tree_(tree), name_(name), execution_(execution) {}
+      : index_(index), tree_(tree), name_(name), execution_{.cancel = execution.cancel} {}
 
-  Status add(const StepPlacedPart& place) {
-    const Result<std::uint32_t> shape = shape_of(place);
-    if (!shape) return shape.status();
-    if (*shape == no_id) return {};
-    Instance& instance = model_.instances.emplace_back();
-    instance.shape = *shape;
-    instance.first_surface = surfaces_;
-    surfaces_ += model_.shapes[*shape].faces.size();
-    instance.name = place.name.empty() ? *model_.shapes[*shape].name : place.name;
-    instance.placement = place.placement;
-    instance.colour = place.colour;
+  /// Reads the shapes, several at once.
+  Status read_shapes() {
+    for (const StepPlacedPart& place : tree_.places) {
+      const auto [known, is_new] = shapes_.try_emplace(key_of(place), readings_.size());
+      if (is_new) readings_.push_back({&place, {}, {}, {}});
+    }
+    const Status status = parallel_for(readings_.size(), 1, execution_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) read(readings_[k]);
+    });
+    if (!status.ok()) return status;
+    for (Reading& one : readings_) {
+      if (!one.status.ok()) return one.status;
+      add(one.faults);
+      if (one.shape.faces.empty()) continue;
+      one.index = static_cast<std::uint32_t>(model_.shapes.size());
+      model_.shapes.push_back(std::move(one.shape));
+    }
+    return {};
+  }
+
+  Status place_shapes() {
+    for (const StepPlacedPart& place : tree_.places) {
+      const std::uint32_t shape = readings_[shapes_.at(key_of(place))].index;
+      if (shape == no_id) continue;
+      Instance& instance = model_.instances.emplace_back();
+      instance.shape = shape;
+      instance.first_surface = surfaces_;
+      surfaces_ += model_.shapes[shape].faces.size();
+      if (surfaces_ > max_surfaces)
+        return Status(StatusCode::unsupported, "its instances have more than " + std::to_string(max_surfaces) + " faces");
+      instance.name = place.name.empty() ? *model_.shapes[shape].name : place.name;
+      instance.placement = place.placement;
+      instance.colour = place.colour;
+    }
     return {};
   }
 
@@ -61,20 +86,36 @@ class StepModel {
   }
 
  private:
-  /// The shape of a part, which is read where it comes first; no_id if it has no faces.
-  Result<std::uint32_t> shape_of(const StepPlacedPart& place) {
-    const auto [known, is_new] = shapes_.try_emplace({place.part, place.colours, place.is_mirrored()}, no_id);
-    if (!is_new) return known->second;
+  static constexpr std::size_t max_surfaces = std::size_t{1} << 24;
+  using Key = std::tuple<std::size_t, std::size_t, bool>;  ///< part, colours and side: places with one key have one shape
+  struct Reading {
+    const StepPlacedPart* place;
+    Shape shape;
+    StepShapeFaults faults;
+    Status status;
+    std::uint32_t index = no_id;  ///< into Model::shapes; no_id: it has no faces
+  };
+
+  static Key key_of(const StepPlacedPart& place) { return {place.part, place.colours, place.is_mirrored()}; }
+
+  void read(Reading& reading) const {
+    const StepPlacedPart& place = *reading.place;
     const StepPart& part = tree_.parts[place.part];
-    const StepColours& colours = tree_.colours[place.colours];
-    const StepShapeInput input{part.items,          part.units, part.uncertainty, part.name,
-                               place.is_mirrored(), part.representation, &colours};
-    Result<Shape> shape = step_shape(index_, input, faults_, execution_);
-    if (!shape) return shape.status();
-    if (shape->faces.empty()) return no_id;
-    known->second = static_cast<std::uint32_t>(model_.shapes.size());
-    model_.shapes.push_back(*std::move(shape));
-    return known->second;
+    const StepShapeInput input{part.items,          part.units,          part.uncertainty,             part.name,
+                               place.is_mirrored(), part.representation, &tree_.colours[place.colours]};
+    Result<Shape> shape = step_shape(index_, input, reading.faults, execution_);
+    if (shape)
+      reading.shape = *std::move(shape);
+    else
+      reading.status = shape.status();
+  }
+
+  void add(const StepShapeFaults& faults) {
+    if (faults_.left_out.empty()) faults_.first_code = faults.first_code;
+    faults_.left_out.insert(faults_.left_out.end(), faults.left_out.begin(), faults.left_out.end());
+    faults_.changed.insert(faults_.changed.end(), faults.changed.begin(), faults.changed.end());
+    faults_.fitted += faults.fitted;
+    faults_.worst_fit = std::max(faults_.worst_fit, faults.worst_fit);
   }
 
   void warn_of(const std::vector<std::string>& sentences, std::size_t count = 0) {
@@ -101,10 +142,11 @@ class StepModel {
   const StepIndex& index_;
   const StepTree& tree_;
   const std::string& name_;
-  const Execution& execution_;
+  const Execution execution_;
   Model model_;
   std::size_t surfaces_ = 0;  ///< of all instances so far
-  std::map<std::tuple<std::size_t, std::size_t, bool>, std::uint32_t> shapes_;  ///< by part, colours and side
+  std::map<Key, std::size_t> shapes_;
+  std::vector<Reading> readings_;
   StepShapeFaults faults_;
 };
 
@@ -116,8 +158,8 @@ Result<Model> read(std::string_view text, const std::string& name, const Executi
   const Result<StepTree> tree = read_step_tree(*index, encoding);
   if (!tree) return named(tree.status());
   StepModel model(*index, *tree, name, execution);
-  for (const StepPlacedPart& place : tree->places)
-    if (Status status = model.add(place); !status.ok()) return named(status);
+  if (Status status = model.read_shapes(); !status.ok()) return named(status);
+  if (Status status = model.place_shapes(); !status.ok()) return named(status);
   std::vector<std::string> notes;
   if (encoding != TextEncoding::utf8)
     notes.push_back(std::string("its names are not UTF-8, and are taken as ") + name_of(encoding));
