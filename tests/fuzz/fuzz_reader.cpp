@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "io/file/gzip.h"
+#include "io/file/zip.h"
 #include "io/mesh/mesh_formats.h"
 #include "tessera/io.h"
 

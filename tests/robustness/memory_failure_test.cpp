@@ -272,6 +272,8 @@ TEST(MemoryFails, WhereFilesAreReadAndWritten) {
         corpus + "rib/scene.rib", corpus + "json/coons_own_blends.json", models + "vase.json", models + "torus.json",
         models + "quadric_ellipsoid.json", models + "trimmed_cylinder.json"})
     survives("read_model " + path.filename().string(), [&] { return read_model(path); });
+  const std::string patches = value_of(read_file(corpus + "bpt/bilinear.bpt"));
+  survives("parse_model", [&] { return parse_model(patches, "model", {.format = "bpt"}); });
   for (const std::filesystem::path path :
        {corpus + "obj_mesh/quad.obj", corpus + "ply/binary.ply", corpus + "stl/ascii.stl",
         corpus + "gltf/embedded.gltf", corpus + "gltf/strip.glb"})

@@ -1,6 +1,5 @@
 #include "io/file/zip.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
