@@ -73,7 +73,7 @@ if(TESSERA_BUILD_IO AND TESSERA_BUILD_CAD_READER)
   include(TesseraOpenCascade)
   set(TESSERA_HAS_CAD_READER ${tessera_OpenCASCADE_FOUND})
   if(NOT TESSERA_HAS_CAD_READER AND TESSERA_BUILD_CAD_READER STREQUAL "AUTO")
-    message(STATUS "tessera-cad-reader (STEP, IGES, BREP) is left out: OpenCASCADE is not found "
+    message(STATUS "tessera-cad-reader (IGES, BREP, STEP on request) is left out: OpenCASCADE is not found "
       "(tools/cad_reader.sh installs it)")
   elseif(NOT TESSERA_HAS_CAD_READER)
     message(FATAL_ERROR "TESSERA_BUILD_CAD_READER is ON, but OpenCASCADE 7.5 or later with its data exchange is not found. "

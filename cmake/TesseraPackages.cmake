@@ -48,7 +48,7 @@ tessera_package(libtessera libs "The shared libraries.")
 tessera_package(libtessera-dev libdevel "The headers, with files for CMake and pkg-config."
   DEPENDS ${same} libtbb-dev libembree-dev libmuparser-dev libtinygltf-dev zlib1g-dev SUGGESTS tessera)
 tessera_package(tessera graphics "The command line." RECOMMENDS tessera-cad-reader)
-tessera_package(tessera-cad-reader graphics "Reads STEP, IGES and BREP files for Tessera's programs, by OpenCASCADE.")
+tessera_package(tessera-cad-reader graphics "Reads IGES and BREP files, and STEP files on request, for Tessera's programs, by OpenCASCADE.")
 tessera_package(python3-tessera python "The package for Python: results as arrays of NumPy." ALL
   DEPENDS ${same} "python3 (>= 3.9)" python3-numpy SUGGESTS tessera-cad-reader)
 include(CPack)

@@ -7,9 +7,9 @@ if (($#)); then
     cat <<'TEXT'
 tools/cad_reader.sh
 
-Installs OpenCASCADE (tools/setup.sh --for cad) and builds tessera-cad-reader, which reads STEP, IGES and BREP files for
-tessera, in build/demo. The command line of build/demo finds it there; for another, name it by TESSERA_CAD_READER, or
-install both by "cmake --install build/demo".
+Installs OpenCASCADE (tools/setup.sh --for cad) and builds tessera-cad-reader, which reads IGES and BREP files for
+tessera, and STEP files on request, in build/demo. The command line of build/demo finds it there; for another, name it
+by TESSERA_CAD_READER, or install both by "cmake --install build/demo".
 TEXT
     exit 0
   fi

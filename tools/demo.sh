@@ -7,9 +7,9 @@ if (($#)); then
     cat <<'TEXT'
 tools/demo.sh
 
-Installs missing packages (tools/setup.sh --for cad), builds the command line and the reader of CAD files in build/demo,
-and writes meshes and pictures of the Utah teapot and of a bearing block from a STEP file into out/. Prints the time of
-each step, and how long a first run takes.
+Installs missing packages (tools/setup.sh --for demo), builds the command line in build/demo, and writes meshes and
+pictures of the Utah teapot and of a bearing block from a STEP file into out/. Prints the time of each step, and how
+long a first run takes.
 TEXT
     exit 0
   fi
@@ -56,7 +56,7 @@ draw_pictures() {
 }
 
 echo "demo: the first run compiles the library, about six minutes on two cores; later runs take seconds."
-step "set-up" tools/setup.sh --for cad
+step "set-up" tools/setup.sh --for demo
 step "build" build
 mkdir -p out
 step "summary" "$tessera" info tools/models/bearing_block.step

@@ -135,7 +135,8 @@ function(check_cad_reader prefix)
     needs(${prefix}/libexec/tessera/tessera-cad-reader libTKSTEP yes)
     file(WRITE ${WORK}/part.step "no part")
     unset(ENV{TESSERA_CAD_READER})
-    execute_process(COMMAND ${prefix}/bin/tessera info ${WORK}/part.step ERROR_VARIABLE message)
+    execute_process(COMMAND ${prefix}/bin/tessera info ${WORK}/part.step --step-reader opencascade
+      ERROR_VARIABLE message)
     if(NOT message MATCHES "part.step: OpenCASCADE cannot read it as STEP")
       message(FATAL_ERROR "the installed tessera does not find the installed reader: ${message}")
     endif()
@@ -153,14 +154,16 @@ function(check_python prefix)
     return()
   endif()
   string(CONCAT code "import sys, tessera as ts\n"
-    "print(ts.__file__, ts.read(sys.argv[1]).patches().tessellate(1e-3).is_certified, len(ts.read(sys.argv[2])) > 0)\n")
+    "print(ts.__file__, ts.read(sys.argv[1]).patches().tessellate(1e-3).is_certified, "
+    "len(ts.read(sys.argv[2], step_reader=sys.argv[3])) > 0)\n")
   set(models ${SOURCE}/tools/models)
-  set(second ${models}/goblet.json)
+  set(step_reader tessera)
   if(EXISTS ${BUILD}/tools/tessera-cad-reader)
-    set(second ${models}/bearing_block.step)
+    set(step_reader opencascade)
   endif()
   execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=TESSERA_C_LIBRARY --unset=TESSERA_CAD_READER --unset=LD_LIBRARY_PATH
-      PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${package} /usr/bin/python3 -c ${code} ${models}/goblet.json ${second}
+      PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${package} /usr/bin/python3 -c ${code} ${models}/goblet.json
+      ${models}/bearing_block.step ${step_reader}
     WORKING_DIRECTORY ${WORK} OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   if(NOT found STREQUAL "${package}/tessera/__init__.py True True")
     message(FATAL_ERROR "the installed package for Python says: ${found}")

@@ -73,7 +73,8 @@ echo "command line: installed in $installed s; after $((SECONDS - start)) s ther
 expect "/usr/libexec/tessera/tessera-cad-reader" "tessera --version"
 expect "" "$readme_commands"
 apt "apt-get remove -y tessera-cad-reader"
-expect "CAD reader (STEP, IGES, BREP): not found" "tessera --version"
+expect "CAD reader (IGES, BREP, STEP on request): not found" "tessera --version"
+expect "proven" "tessera tessellate tools/models/bearing_block.step -o block.glb"
 expect "proven" "tessera tessellate tools/models/teapot.bpt -o teapot.glb --tolerance 0.001"
 
 new_root

@@ -98,7 +98,7 @@ hits = patches.rays().closest([0, -10, 2], [0, 1, 0])
 mesh = patches.tessellate(1e-3)
 found = {"file": ts.__file__, "patches": len(patches), "is_hit": bool(hits.is_hit), "proven": mesh.is_certified}
 if sys.argv[2:] == ["cad"]:
-    found["unit"] = ts.read(models / "bearing_block.step").unit
+    found["unit"] = ts.read(models / "bearing_block.step", step_reader="opencascade").unit
 maps = pathlib.Path("/proc/self/maps").read_text().splitlines()
 found["libraries"] = sorted({line.split()[-1] for line in maps if ".so" in line})
 print(json.dumps(found))

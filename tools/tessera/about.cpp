@@ -26,8 +26,8 @@ std::string version_text() {
   const std::string meshes = mesh_formats;
   return "tessera " TESSERA_VERSION "\nReads surfaces: " + model_formats() + "\nReads meshes: " + meshes +
          "\nWrites surfaces: .obj, .json, .bpt\nWrites meshes: " + meshes +
-         "; in pieces .ply, .pvtp\nWrites pictures: .png, .exr\nCAD reader (STEP, IGES, BREP): " + cad_reader_text() +
-         "\nPacked files: " + packed + "\n";
+         "; in pieces .ply, .pvtp\nWrites pictures: .png, .exr\nCAD reader (IGES, BREP, STEP on request): " +
+         cad_reader_text() + "\nPacked files: " + packed + "\n";
 }
 
 void describe(Command& tool) {
@@ -39,7 +39,7 @@ void describe(Command& tool) {
       "meshes as " +
       mesh_formats +
       ". Surfaces are Bezier patches (.bpt), BezierView (.bv), GoTools (.g2),\n"
-      "RenderMan (.rib), free-form OBJ, CAD parts (by the program tessera-cad-reader), and surfaces of every kind\n"
+      "RenderMan (.rib), free-form OBJ, CAD parts (IGES and BREP by tessera-cad-reader), and surfaces of every kind\n"
       "(.json; share/doc/tessera/FORMAT.md describes the format). A warning names each part of a file that is "
       "skipped.\n"
       "Files may be packed by gzip (.obj.gz), CAD parts also by zip (.stpz).\n"

@@ -114,8 +114,8 @@ typedef struct tsr_bspline {
   const char* name;                  /* NULL: none */
 } tsr_bspline;
 
-/* Reads a file: .json, .step, .iges, .brep, .g2, .obj, .rib, .bpt, .bv; the extension decides. STEP, IGES and BREP need
- * the program tessera-cad-reader, beside the library or on PATH. Errors: TSR_IO_ERROR, TSR_PARSE_ERROR,
+/* Reads a file: .json, .step, .iges, .brep, .g2, .obj, .rib, .bpt, .bv; the extension decides. IGES and BREP need the
+ * program tessera-cad-reader, beside the library or on PATH. Errors: TSR_IO_ERROR, TSR_PARSE_ERROR,
  * TSR_UNSUPPORTED, and those of surfaces. */
 tsr_status tsr_model_read(tsr_model** model, const char* path, const tsr_run* run);
 /* Reads the text of a JSON file, which has surfaces of every kind; `name` stands for the file in messages. */

@@ -95,10 +95,7 @@ def test_shapes_and_instances():
 
 
 def test_a_cad_file_has_shapes_at_places(tmp_path):
-    try:
-        model = ts.read(model_file("bearing_block.step"))
-    except ts.UnsupportedError:
-        pytest.skip("there is no reader of CAD files")
+    model = ts.read(model_file("bearing_block.step"))
     assert model.unit == "mm" and len(model.shapes) >= 1 and len(model.instances) >= 1
     instance = model.instances[0]
     assert instance.placement.shape == (4, 4) and instance.placement[3].tolist() == [0, 0, 0, 1]

@@ -263,10 +263,7 @@ def test_bad_sections(ball):
 
 
 def test_the_volume_of_a_part():
-    try:
-        part = ts.read(model_file("bearing_block.step"))
-    except ts.UnsupportedError:
-        pytest.skip("there is no tessera-cad-reader")
+    part = ts.read(model_file("bearing_block.step"))
     found = part.measure()
     corners = found.box.high - found.box.low
     assert 0 < found.volume < corners.prod() and found.volume_error < 1e-6 * found.volume

@@ -178,7 +178,7 @@ void add_reading(Command& command, LoadOptions& options) {
                          if (name == known) options.step_reader = reader;
                      });
   command
-      .add("--cad-reader", "FILE", "Program that reads CAD files [the tessera-cad-reader beside tessera]",
+      .add("--cad-reader", "FILE", "Program that reads IGES and BREP files [the tessera-cad-reader beside tessera]",
            [](const std::string& file) { ::setenv("TESSERA_CAD_READER", file.c_str(), 1); })
       .check(fault_of_name);
 }
