@@ -52,10 +52,10 @@ class Parts : public ToolTest {
     const std::uint64_t count = bytes.size();
     std::memcpy(size.data(), &count, sizeof count);
     folder_.file("bytes", cad_reader_greeting() + size + bytes);
-    folder_.file("part.step", "ISO-10303-21;");
+    folder_.file("part.igs", "ISO-10303-21;");
     const std::string reader = folder_.file("reader", "#!/bin/sh\ncat '" + (folder_ / "bytes") + "'\n");
     std::filesystem::permissions(reader, std::filesystem::perms::owner_all);
-    std::vector<std::string> command{"tessellate", "part.step", "-o", output};
+    std::vector<std::string> command{"tessellate", "part.igs", "-o", output};
     command.insert(command.end(), options.begin(), options.end());
     return run(command, {"TESSERA_CAD_READER=" + reader});
   }
@@ -183,7 +183,7 @@ TEST_F(Parts, TooSmallTolerancesAndLimitsAreRefused) {
   const ToolRun flat = tessellate("a.ply", {"--tolerance", "0.01", "--precision", "float"});
   EXPECT_EQ(flat.status, 1);
   EXPECT_EQ(
-      flat.errors.find("tessera: part.step: the tolerance 0.01 must be above 0.06, the rounding of all instances"), 0u)
+      flat.errors.find("tessera: part.igs: the tolerance 0.01 must be above 0.06, the rounding of all instances"), 0u)
       << flat.errors;
   EXPECT_LE(facts("a.ply", {"--tolerance", "0.01", "--precision", "double"})["bound"], 0.01);
   EXPECT_LE(facts("a.glb", {"--tolerance", "0.0001"})["bound"], 0.0001);
@@ -191,7 +191,7 @@ TEST_F(Parts, TooSmallTolerancesAndLimitsAreRefused) {
   EXPECT_EQ(many.status, 1);
   EXPECT_NE(many.errors.find("take 20 triangles, the limit is 19"), std::string::npos) << many.errors;
   const ToolRun large = tessellate("b.glb", {"--grid", "256x256", "--max-memory", "1M"});
-  EXPECT_NE(large.errors.find("part.step: a mesh of 262144 triangles needs "), std::string::npos) << large.errors;
+  EXPECT_NE(large.errors.find("part.igs: a mesh of 262144 triangles needs "), std::string::npos) << large.errors;
 }
 
 TEST_F(Parts, FilesWithAndWithoutShapesBecomeOneMesh) {

@@ -17,9 +17,9 @@
 //
 // - Exact up to rounding: splines and Bezier surfaces with their own points, knots and parameters (periodic ones on
 //   unclamped knots); planes, cylinders, cones, spheres, tori, surfaces of revolution and of extrusion.
-// - Without an exact form: offset surfaces, and those swept along hyperbolas and offset curves. OpenCASCADE's reader
-//   fits them, with a warning that states how well. Tessera's leaves out those that it can't state exactly, with a
-//   warning.
+// - Fitted, with a warning that states how well: offset surfaces that are no quadrics; by OpenCASCADE's reader also
+//   those swept along hyperbolas, which Tessera's has exactly, and along offset curves. A face that its reader can
+//   neither state nor fit is left out, with a warning.
 // - Parameters are the file's, except along circles and ellipses: there they are those of rational arcs of at most 90
 //   degrees, with the angle's value at their ends.
 // - The domain is the face's rectangle of parameters, which may be a part of the knots' domain.
