@@ -23,9 +23,14 @@
 // - Parameters are the file's, except along circles and ellipses: there they are those of rational arcs of at most 90
 //   degrees, with the angle's value at their ends.
 // - The domain is the face's rectangle of parameters, which may be a part of the knots' domain.
-// - A face whose edges run inside that rectangle is trimmed. Its trims hold its loops: the edges' own splines wherever
-//   the parameters are the file's, else curves within 1e-9 of the range. If they can't be read, the face is taken as
-//   untrimmed, and a warning names it. INTERNAL and EXTERNAL edges trim nothing.
+// - A face whose edges run inside that rectangle is trimmed. Its trims hold its loops.
+// - Tessera's reader makes the curves of loops from the edges and does not use those that the file states: exact on
+//   planes; straight along a parameter; else of degree 7 at the edge's own parameter, within 1e-3 of the file's
+//   uncertainty of the points of the surface that are nearest to the edge, as sampled. A sphere whose face has an edge
+//   through a pole takes another axis. A sphere or torus without edges has some along its sides.
+// - OpenCASCADE's reader takes the curves that the file states, or those that OpenCASCADE makes: the edges' own splines
+//   wherever the parameters are the file's, else curves within 1e-9 of the range. If they can't be read, the face is
+//   taken as untrimmed, and a warning names it. INTERNAL and EXTERNAL edges trim nothing.
 // - Curves that leave the surface by less than the tolerances of their face follow its side there.
 // - A face that the file reverses has u and v swapped, so that normals of solids point outwards.
 // - `placement` is the face's place in the assembly, with the scales and mirrors of STEP's mapped items; `name` is the

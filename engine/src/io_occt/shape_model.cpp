@@ -130,7 +130,7 @@ class PartShape {
       shortcomings_.whole.push_back(words(face, name) +
                                     " is read without shared edges: a curve of its border ends before its edge");
     if (face.Orientation() == TopAbs_REVERSED)
-      if (Status status = transpose(made->surface, loops->loops); !status.ok()) return status;
+      if (Status status = turn_around(made->surface, loops->loops); !status.ok()) return status;
     shortcomings_.fitted += made->fit_error > 0;
     shortcomings_.worst_fit = std::max(shortcomings_.worst_fit, made->fit_error);
     if (wholes.shell != no_id)

@@ -27,7 +27,7 @@ Result<Curve> transposed(const Curve& curve) {
 
 }  // namespace
 
-Status transpose(BSplineSurface& surface, std::vector<TrimLoop>& loops) {
+Status turn_around(BSplineSurface& surface, std::vector<TrimLoop>& loops) {
   Result<BSplineSurface> swapped = transposed(surface);
   if (!swapped) return swapped.status();
   surface = *std::move(swapped);

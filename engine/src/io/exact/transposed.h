@@ -10,6 +10,6 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// Swaps u and v of a surface and its loops, which turns the normal around. Errors: those of BSplineSurface and Curve.
-Status transpose(BSplineSurface& surface, std::vector<TrimLoop>& loops);
+Status turn_around(BSplineSurface& surface, std::vector<TrimLoop>& loops);
 
 }}  // namespace tessera::abi_0_1

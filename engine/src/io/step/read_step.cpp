@@ -54,7 +54,8 @@ class StepModel {
       instance.first_surface = surfaces_;
       surfaces_ += model_.shapes[shape].faces.size();
       if (surfaces_ > max_surfaces)
-        return Status(StatusCode::unsupported, "its instances have more than " + std::to_string(max_surfaces) + " faces");
+        return Status(StatusCode::unsupported,
+                      "its instances have more than " + std::to_string(max_surfaces) + " faces");
       instance.name = place.name.empty() ? *model_.shapes[shape].name : place.name;
       instance.placement = place.placement;
       instance.colour = place.colour;
@@ -87,7 +88,8 @@ class StepModel {
 
  private:
   static constexpr std::size_t max_surfaces = std::size_t{1} << 24;
-  using Key = std::tuple<std::size_t, std::size_t, bool>;  ///< part, colours and side: places with one key have one shape
+  /// Part, colours and side: places with one key have one shape.
+  using Key = std::tuple<std::size_t, std::size_t, bool>;
   struct Reading {
     const StepPlacedPart* place;
     Shape shape;
@@ -101,8 +103,13 @@ class StepModel {
   void read(Reading& reading) const {
     const StepPlacedPart& place = *reading.place;
     const StepPart& part = tree_.parts[place.part];
-    const StepShapeInput input{part.items,          part.units,          part.uncertainty,             part.name,
-                               place.is_mirrored(), part.representation, &tree_.colours[place.colours]};
+    const StepShapeInput input{part.items,
+                               part.units,
+                               part.uncertainty,
+                               part.name,
+                               place.is_mirrored(),
+                               part.representation,
+                               &tree_.colours[place.colours]};
     Result<Shape> shape = step_shape(index_, input, reading.faults, execution_);
     if (shape)
       reading.shape = *std::move(shape);

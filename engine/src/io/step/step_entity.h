@@ -51,11 +51,11 @@ class StepEntity {
   /// A number above 0; `what` names it, such as "radius".
   double positive(std::size_t at, std::string_view what);
   int integer(std::size_t at);
-  bool logical(std::size_t at);                           ///< .T. or .F.
-  std::string_view enumeration(std::size_t at);           ///< without the dots
-  std::string_view string(std::size_t at);                ///< as it is in the file: see step_text(); empty if left out
-  std::uint64_t reference(std::size_t at);                ///< to an instance of the file
-  std::vector<double> reals(std::size_t at);              ///< a list
+  bool logical(std::size_t at);                  ///< .T. or .F.
+  std::string_view enumeration(std::size_t at);  ///< without the dots
+  std::string_view string(std::size_t at);       ///< as it is in the file: see step_text(); empty if left out
+  std::uint64_t reference(std::size_t at);       ///< to an instance of the file
+  std::vector<double> reals(std::size_t at);     ///< a list
   /// Reads a list of numbers, as many as fit into `out`. Returns how many it has.
   std::size_t reals(std::size_t at, std::span<double> out);
   std::vector<std::uint64_t> references(std::size_t at);  ///< a list

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "io/exact/transposed.h"
-#include "io/step/step_outline.h"
 #include "io/step/step_face_box.h"
 #include "io/step/step_inverse.h"
+#include "io/step/step_outline.h"
 #include "io/step/step_trace.h"
 #include "io/step/step_trim_curves.h"
 
@@ -41,7 +41,7 @@ Result<StepFaceResult> whole_surface(const StepFace& face, BSplineSurface surfac
   StepFaceResult out{std::move(surface), {}, true, {}, 0};
   if (Status status = add_outline(out, tolerance); !status.ok()) return status;
   if (!face.agrees)
-    if (Status status = transpose(out.surface, out.loops); !status.ok()) return status;
+    if (Status status = turn_around(out.surface, out.loops); !status.ok()) return status;
   return out;
 }
 
@@ -80,14 +80,15 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
     TrimLoop& made = out.loops.emplace_back();
     made.hole = is_hole || (has_outer && !loop.is_outer);
     for (const EdgeTrace& piece : loop.pieces) {
-      if (piece.edge == no_id) out.own_edges.push_back(pole_edge(piece.vertex, {out.loops.size() - 1, made.curves.size()}));
+      if (piece.edge == no_id)
+        out.own_edges.push_back(pole_edge(piece.vertex, {out.loops.size() - 1, made.curves.size()}));
       const BrepEdge* const edge = piece.edge == no_id ? nullptr : &context.edges[piece.edge];
       if (Status status = maker.append(piece, edge, made); !status.ok()) return status;
     }
   }
   out.whole = is_whole_box(out.loops, *box);
   if (!face.agrees)
-    if (Status status = transpose(out.surface, out.loops); !status.ok()) return status;
+    if (Status status = turn_around(out.surface, out.loops); !status.ok()) return status;
   return out;
 }
 

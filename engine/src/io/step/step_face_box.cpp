@@ -44,7 +44,9 @@ class ExtentFinder {
     if (piece.edge == no_id) return out;
     const FastCurve curve(*edges_[piece.edge].curve);
     for (std::size_t k = 1; k + 1 < piece.samples.size(); ++k) {
-      const auto place = [&](std::size_t at) { return Place{piece.samples[at].s, of(piece.samples[at].place, along_)}; };
+      const auto place = [&](std::size_t at) {
+        return Place{piece.samples[at].s, of(piece.samples[at].place, along_)};
+      };
       if (const auto extreme = refined(curve, piece.samples[k].place, {place(k - 1), place(k), place(k + 1)}))
         out.extend(*extreme);
     }
@@ -215,14 +217,16 @@ bool keep_outside(const SurfaceInverse& inverse, std::span<const LoopTrace> loop
 }
 
 Result<FaceBox> step_face_box(const SurfaceInverse& inverse, std::span<const BrepEdge> edges,
-                              std::vector<LoopTrace>& loops,
-                              std::span<const ParameterPoint> vertices, bool agrees, double tolerance) {
+                              std::vector<LoopTrace>& loops, std::span<const ParameterPoint> vertices, bool agrees,
+                              double tolerance) {
   const bool is_whole = keep_outside(inverse, loops, agrees);
   const Domain& whole = inverse.whole();
   FreeRange u{0, 0, whole.u0, whole.u1, inverse.period().u, 0, {}},
       v{0, 0, whole.v0, whole.v1, inverse.period().v, 0, {}};
-  Extent in_u = RangeFinder(inverse, loops, Along::u, agrees).find(vertices, {inverse, edges, Along::u, 1e-3 * tolerance});
-  Extent in_v = RangeFinder(inverse, loops, Along::v, agrees).find(vertices, {inverse, edges, Along::v, 1e-3 * tolerance});
+  Extent in_u =
+      RangeFinder(inverse, loops, Along::u, agrees).find(vertices, {inverse, edges, Along::u, 1e-3 * tolerance});
+  Extent in_v =
+      RangeFinder(inverse, loops, Along::v, agrees).find(vertices, {inverse, edges, Along::v, 1e-3 * tolerance});
   if (is_whole) in_u = {whole.u0, whole.u1}, in_v = {whole.v0, whole.v1};
   u.from = in_u.from, u.to = in_u.to, v.from = in_v.from, v.to = in_v.to;
   std::array<std::vector<double>, 2> knots = inverse.knots();

@@ -19,8 +19,8 @@ namespace tessera { inline namespace abi_0_1 {
 ///
 /// Errors: unsupported (no bounds, no extent).
 Result<FaceBox> step_face_box(const SurfaceInverse& inverse, std::span<const BrepEdge> edges,
-                              std::vector<LoopTrace>& loops,
-                              std::span<const ParameterPoint> vertices, bool agrees, double tolerance);
+                              std::vector<LoopTrace>& loops, std::span<const ParameterPoint> vertices, bool agrees,
+                              double tolerance);
 
 /// Tells whether loops keep what is outside of them, on a surface without sides, such as a ball with a hole.
 bool keep_outside(const SurfaceInverse& inverse, std::span<const LoopTrace> loops, bool agrees);

@@ -195,8 +195,8 @@ class SweptInverse : public SurfaceInverse {
 
   ParameterPoint places(const Vec3& p, const ParameterPoint* near) const {
     const Vec3 local = sweep_.is_turned ? sweep_.frame.local(p) : p;
-    const Vec3 goal = sweep_.is_turned ? Vec3{distance_from_z(local), 0, local.z}
-                                       : p - dot(p, sweep_.direction) * sweep_.direction;
+    const Vec3 goal =
+        sweep_.is_turned ? Vec3{distance_from_z(local), 0, local.z} : p - dot(p, sweep_.direction) * sweep_.direction;
     const double t = parameter(goal, near ? std::optional(sweep_.is_turned ? near->v : near->u) : std::nullopt);
     const Vec3 there = fast_.point(wrapped(t));
     if (!sweep_.is_turned) return {t, dot(p - there, sweep_.direction)};
@@ -265,7 +265,8 @@ Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make_offset(const StepGe
   }
   Box3 wider = extent;
   const double far = std::abs(offset.distance);
-  if (!extent.empty()) wider.extend(extent.lower - Vec3{far, far, far}), wider.extend(extent.upper + Vec3{far, far, far});
+  if (!extent.empty())
+    wider.extend(extent.lower - Vec3{far, far, far}), wider.extend(extent.upper + Vec3{far, far, far});
   const Result<std::unique_ptr<SurfaceInverse>> basis = make(geometry, offset.basis, wider, tolerance);
   if (!basis) return basis.status();
   Domain box = (*basis)->whole();

@@ -23,7 +23,8 @@ std::vector<double> corners(std::span<const double> knots, int degree, double fr
 
 /// The patches of a grid, which have one degree, as one spline with knots as often as the degree.
 Result<BSplineSurface> joined(const PatchGrid& grid) {
-  const auto p = static_cast<std::size_t>(grid.patch(0, 0).degree_u()), q = static_cast<std::size_t>(grid.patch(0, 0).degree_v());
+  const auto p = static_cast<std::size_t>(grid.patch(0, 0).degree_u()),
+             q = static_cast<std::size_t>(grid.patch(0, 0).degree_v());
   const auto knots = [](std::span<const double> breaks, std::size_t degree) {
     std::vector<double> out{breaks.front()};
     for (const double value : breaks) out.insert(out.end(), degree, value);

@@ -12,7 +12,8 @@ namespace {
 /// The border curve of a clamped surface on a side, along the growing parameter.
 Result<Curve> side_curve(const BSplineSurface& s, Side side) {
   const bool along_u = side == Side::v0 || side == Side::v1, is_last = side == Side::u1 || side == Side::v1;
-  const std::size_t count = along_u ? s.count_u() : s.count_v(), row = is_last ? (along_u ? s.count_v() : s.count_u()) - 1 : 0;
+  const std::size_t count = along_u ? s.count_u() : s.count_v(),
+                    row = is_last ? (along_u ? s.count_v() : s.count_u()) - 1 : 0;
   std::vector<Vec3> points;
   std::vector<double> weights;
   for (std::size_t k = 0; k < count; ++k) {

@@ -6,8 +6,8 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Adds the loop along the sides of the surface's domain, and their edges: one for two sides that are the same line, and
-/// a degenerate one for a side that is a point. Errors: those of Curve.
+/// Adds the loop along the sides of the surface's domain, and their edges: one for two sides that are the same line,
+/// and a degenerate one for a side that is a point. Errors: those of Curve.
 Status add_outline(StepFaceResult& face, double tolerance);
 
 }}  // namespace tessera::abi_0_1

@@ -21,8 +21,8 @@ struct StepUnits {
 /// Converts points of a file. Threads: any number of calls at once.
 ///
 /// Errors of all calls, here and in the classes above this one, name the instance and its line: parse_error (an
-/// attribute that is missing, or of the wrong type, count or value; a reference to nothing or to the wrong kind; a chain
-/// of more than 32 instances, such as a cycle), non_finite (a number too large).
+/// attribute that is missing, or of the wrong type, count or value; a reference to nothing or to the wrong kind; a
+/// chain of more than 32 instances, such as a cycle), non_finite (a number too large).
 class StepPoints {
  public:
   /// The index must outlive the object.

@@ -35,8 +35,9 @@ StepElementary off_poles(const StepElementary& sphere, std::span<const Curve* co
   }
   Vec3 best{1, 0, 0};
   double farthest = -1;
-  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{1, 1, 0}, Vec3{1, -1, 0}, Vec3{1, 0, 1}, Vec3{-1, 0, 1},
-                           Vec3{0, 1, 1}, Vec3{0, -1, 1}, Vec3{1, 1, 1}, Vec3{-1, 1, 1}, Vec3{1, -1, 1}, Vec3{-1, -1, 1}}) {
+  for (const Vec3& axis :
+       {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{1, 1, 0}, Vec3{1, -1, 0}, Vec3{1, 0, 1}, Vec3{-1, 0, 1}, Vec3{0, 1, 1},
+        Vec3{0, -1, 1}, Vec3{1, 1, 1}, Vec3{-1, 1, 1}, Vec3{1, -1, 1}, Vec3{-1, -1, 1}}) {
     const Vec3 unit = normalized(axis);
     double nearest = sphere.radius;
     for (const Vec3& p : samples) nearest = std::min(nearest, length(cross(p, unit)));

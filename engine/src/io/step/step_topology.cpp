@@ -282,8 +282,8 @@ std::uint64_t point_of(const StepIndex& index, std::uint64_t vertex) {
 
 }  // namespace
 
-Result<StepTopology> StepTopology::make(const StepIndex& index, std::span<const std::uint64_t> items,
-                                        bool is_mirrored, const Execution& execution) {
+Result<StepTopology> StepTopology::make(const StepIndex& index, std::span<const std::uint64_t> items, bool is_mirrored,
+                                        const Execution& execution) {
   StepTopology out;
   FaceWalk walk(index, out);
   for (const std::uint64_t item : items) walk.add_item(item, is_mirrored);

@@ -88,8 +88,8 @@ ParameterPoint TrimCurveMaker::near(const EdgeTrace& piece, double s) const {
     return piece.reversed ? sample.s > value : sample.s < value;
   };
   const auto& samples = piece.samples;
-  const auto next = static_cast<std::size_t>(
-      std::lower_bound(samples.begin() + 1, samples.end() - 1, s, before) - samples.begin());
+  const auto next =
+      static_cast<std::size_t>(std::lower_bound(samples.begin() + 1, samples.end() - 1, s, before) - samples.begin());
   const std::size_t count = std::min<std::size_t>(4, samples.size());
   const std::size_t first = std::min(next < 2 ? 0 : next - 2, samples.size() - count);
   ParameterPoint out;
