@@ -37,7 +37,8 @@ class LobattoFit {
   /// - `at(t, near)`: the point at a parameter; `near`, a point, is close to it.
   /// - `is_near(a, b)`: whether two points are near enough.
   /// - `breaks`: the ends of the interval and the parameters between them where the curve is less smooth, in order. An
-  ///   interval is divided at the middle one, or else halved at most 10 times, until the polynomial is near.
+  ///   interval is divided at the middle one, or else halved at most 10 times, until the polynomial is near. After
+  ///   5000 points no interval is halved.
   template <class At, class IsNear>
   void follow(const At& at, const IsNear& is_near, std::span<const double> breaks) {
     const double from = breaks.front(), to = breaks.back();
@@ -84,13 +85,13 @@ class LobattoFit {
       for (std::size_t i = 0; i <= degree; ++i) there += tables.at_checks[c * (degree + 1) + i] * points[i];
       fits = is_near(there, at(place(tables.checks[c]), there));
     }
-    if (fits || depth == max_depth || points_.size() > max_points) {
+    const bool has_break = breaks.size() > 2;
+    if (fits || (!has_break && (depth == max_depth || points_.size() > max_points))) {
       fits_ = fits_ && fits;
       points_.insert(points_.end(), points.begin() + 1, points.end());
       knots_.insert(knots_.end(), degree, to);
       return;
     }
-    const bool has_break = breaks.size() > 2;
     const std::size_t middle = breaks.size() / 2;
     const double cut = has_break ? breaks[middle] : 0.5 * (from + to);
     const std::vector<double> halves{from, cut, to};

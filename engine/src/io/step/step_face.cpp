@@ -73,7 +73,9 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
   if (!surface) return surface.status();
   if (loops.empty()) return whole_surface(face, std::move(surface->surface), context.tolerance);
   StepFaceResult out{std::move(surface->surface), {}, false, {}, (*inverse)->fit_error()};
-  const double fit_tolerance = 1e-3 * context.tolerance;
+  // Below the rounding of places, no curve would be near enough.
+  const double rounding = 2e-14 * std::max(max_abs(extent->lower), max_abs(extent->upper));
+  const double fit_tolerance = std::max(1e-3 * context.tolerance, rounding);
   const TrimCurveMaker maker(**inverse, surface->parameters, *box, fit_tolerance);
   const bool has_outer = std::ranges::any_of(loops, [](const LoopTrace& loop) { return loop.is_outer; });
   for (const LoopTrace& loop : loops) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "io/exact/usable_edges.h"
@@ -67,6 +68,7 @@ class ShapeMaker {
     Box3 box;
     for (std::size_t k = 0; k < faults.size(); ++k)
       if (faults[k].ok()) box.extend(shape_.vertices[k].position);
+    extend_by_round_edges(faults, box);
     tolerance_ = tolerance_of(input_.uncertainty, box);
     for (BrepVertex& vertex : shape_.vertices) vertex.tolerance = tolerance_;
     for (StepEdge& edge : topology_.edges)
@@ -76,6 +78,20 @@ class ShapeMaker {
       for (const StepBound& bound : face.bounds)
         if (bound.vertex != no_id && face.status.ok()) face.status = faults[bound.vertex];
     return {};
+  }
+
+  /// Extends the box by edges that begin and end at one vertex: the vertices of a small part may be all at one place.
+  void extend_by_round_edges(const std::vector<Status>& faults, Box3& box) const {
+    constexpr std::size_t few = 16;
+    constexpr double everything = std::numeric_limits<double>::max();  // all of each curve
+    if (shape_.vertices.size() > few) return;
+    for (const StepEdge& edge : topology_.edges) {
+      if (!edge.status.ok() || edge.start != edge.end || !faults[edge.start].ok()) continue;
+      const Vec3 end = shape_.vertices[edge.start].position;
+      const Result<StepEdgeCurve> made = geometry_.edge_curve(edge.curve, {end, end}, edge.agrees, everything);
+      if (!made) continue;
+      for (const Vec3& p : made->curve.curve.points()) box.extend(p);
+    }
   }
 
   Status make_edges() {
