@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/internal_export.h"
 #include "basis/bernstein.h"
 #include "basis/chebyshev_lobatto.h"
 #include "tessera/curve.h"
@@ -17,7 +18,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// Tables of interpolation at Chebyshev-Lobatto parameters.
 struct LobattoTables {
   explicit LobattoTables(int degree);
-  static const LobattoTables& of_degree_7();
+  TESSERA_INTERNAL_EXPORT static const LobattoTables& of_degree_7();
 
   int degree;
   std::vector<double> nodes;      ///< in [0,1], with both ends

@@ -19,6 +19,44 @@ struct Extent {
   void extend(const Extent& other) { from = std::min(from, other.from), to = std::max(to, other.to); }
 };
 
+/// The least value of a function with one minimum in an interval, by golden sections and parabolas (Brent, Algorithms
+/// for Minimization without Derivatives, 1973, ch. 5). Ends after 40 steps.
+template <class Function>
+double least_value(const Function& f, double from, double to) {
+  constexpr double golden = 0.3819660112501051, accuracy = 1e-8;
+  double x = from + golden * (to - from), w = x, v = x, step = 0, before = 0;
+  double fx = f(x), fw = fx, fv = fx;
+  const double tiny = accuracy * (to - from);
+  for (int k = 0; k < 40; ++k) {
+    const double middle = 0.5 * (from + to);
+    if (std::abs(x - middle) <= 2 * tiny - 0.5 * (to - from)) break;
+    double p = 0, q = 0;
+    if (std::abs(before) > tiny) {
+      const double r = (x - w) * (fx - fv);
+      q = (x - v) * (fx - fw);
+      p = (x - v) * q - (x - w) * r;
+      q = 2 * (q - r);
+      p = q > 0 ? -p : p;
+      q = std::abs(q);
+    }
+    const bool is_parabola = q > 0 && std::abs(p) < std::abs(0.5 * q * before) && p > q * (from - x) && p < q * (to - x);
+    before = is_parabola ? step : (x < middle ? to - x : from - x);
+    step = is_parabola ? p / q : golden * before;
+    const double u = x + (std::abs(step) >= tiny ? step : std::copysign(tiny, step)), fu = f(u);
+    if (fu <= fx) {
+      (u < x ? to : from) = x;
+      v = w, fv = fw, w = x, fw = fx, x = u, fx = fu;
+      continue;
+    }
+    (u < x ? from : to) = u;
+    if (fu <= fw || w == x)
+      v = w, fv = fw, w = u, fw = fu;
+    else if (fu <= fv || v == x || v == w)
+      v = u, fv = fu;
+  }
+  return fx;
+}
+
 /// Finds how far the loops of a face reach along one parameter.
 class ExtentFinder {
  public:
@@ -27,50 +65,48 @@ class ExtentFinder {
 
   Extent find(const LoopTrace& loop) const {
     Extent out;
-    for (const EdgeTrace& piece : loop.pieces) out.extend(find(piece));
-    return out;
-  }
-
- private:
-  struct Place {
-    double s, value;
-  };
-
-  Extent find(const EdgeTrace& piece) const {
-    const auto constant = constant_parameter(inverse_, piece, along_ == Along::u, tolerance_);
-    if (constant) return {*constant, *constant};
-    Extent out;
-    for (const TraceSample& sample : piece.samples) out.extend(of(sample.place, along_));
-    if (piece.edge == no_id) return out;
-    const FastCurve curve(*edges_[piece.edge].curve);
-    for (std::size_t k = 1; k + 1 < piece.samples.size(); ++k) {
-      const auto place = [&](std::size_t at) {
-        return Place{piece.samples[at].s, of(piece.samples[at].place, along_)};
-      };
-      if (const auto extreme = refined(curve, piece.samples[k].place, {place(k - 1), place(k), place(k + 1)}))
-        out.extend(*extreme);
+    for (const EdgeTrace& piece : loop.pieces) out.extend(sampled(piece));
+    const Extent of_samples = out;
+    for (const EdgeTrace& piece : loop.pieces) {
+      const bool is_straight = piece.edge != no_id && inverse_.plane() && edges_[piece.edge].curve->degree() == 1;
+      if (piece.edge == no_id || is_straight || is_constant(piece)) continue;
+      const FastCurve curve(*edges_[piece.edge].curve);
+      out.extend(largest(curve, piece, 1, of_samples.to));
+      out.extend(-largest(curve, piece, -1, -of_samples.from));
     }
     return out;
   }
 
-  /// Goes to the extreme of parabolas through three places, until it rests; nothing if it is not between them.
-  std::optional<double> refined(const FastCurve& curve, const ParameterPoint& near, std::array<Place, 3> p) const {
-    const double low = std::min(p[0].s, p[2].s), high = std::max(p[0].s, p[2].s);
-    std::optional<double> out;
-    for (int step = 0; step < 8; ++step) {
-      const double a = p[0].s - p[1].s, b = p[2].s - p[1].s, fa = p[0].value - p[1].value, fb = p[2].value - p[1].value;
-      const double denominator = 2 * (fa * b - fb * a);
-      const double vertex = p[1].s + (fa * b * b - fb * a * a) / denominator;
-      if (!(vertex > low && vertex < high)) return out;  // or no parabola
-      const double value = of(inverse_.at(curve.point(vertex), near), along_);
-      const double change = std::abs(value - p[1].value);
-      out = value;
-      if (change <= 1e-12 * std::abs(value) || vertex == p[0].s || vertex == p[1].s || vertex == p[2].s) break;
-      // The new place replaces the one that is farthest from it.
-      const auto far = [&](const Place& one) { return std::abs(one.s - vertex); };
-      std::size_t farthest = far(p[0]) > far(p[2]) ? 0 : 2;
-      p[farthest] = p[1];
-      p[1] = {vertex, value};
+ private:
+  std::optional<double> constant(const EdgeTrace& piece) const {
+    return constant_parameter(inverse_, piece, along_ == Along::u, tolerance_);
+  }
+  bool is_constant(const EdgeTrace& piece) const { return constant(piece).has_value(); }
+
+  Extent sampled(const EdgeTrace& piece) const {
+    if (const std::optional<double> value = constant(piece)) return {*value, *value};
+    Extent out;
+    for (const TraceSample& sample : piece.samples) out.extend(of(sample.place, along_));
+    return out;
+  }
+
+  /// The largest of `sign` times the parameter between samples, as far as it may exceed `most`, the largest of all
+  /// samples.
+  double largest(const FastCurve& curve, const EdgeTrace& piece, double sign, double most) const {
+    const std::vector<TraceSample>& samples = piece.samples;
+    const std::size_t last = samples.size() - 1;
+    const auto value = [&](std::size_t k) { return sign * of(samples[k].place, along_); };
+    double out = most;
+    for (std::size_t k = 0; k <= last; ++k) {
+      const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, last);
+      const double step = std::max(value(k) - value(before), value(k) - value(after));
+      const bool is_peak = value(k) >= value(before) && value(k) >= value(after);
+      if (!is_peak || value(k) + step <= most) continue;
+      const auto negative = [&](double s) { return -sign * of(inverse_.at(curve.point(s), samples[k].place), along_); };
+      const double from = samples[before].s, to = samples[after].s, here = samples[k].s;
+      // From an end, the curve may fall at once.
+      if ((k == 0 || k == last) && negative(here + 1e-3 * (from + to - 2 * here)) > -value(k)) continue;
+      out = std::max(out, -least_value(negative, std::min(from, to), std::max(from, to)));
     }
     return out;
   }

@@ -1,10 +1,10 @@
 #include "io/step/step_offset.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "basis/knots.h"
 #include "tessera/convert.h"
 #include "tessera/parametric_surface.h"
 
@@ -16,7 +16,7 @@ std::vector<double> corners(std::span<const double> knots, int degree, double fr
   std::vector<double> out;
   for (const double knot : knots) {
     const bool is_inner = knot > from && knot < to && (out.empty() || knot > out.back());
-    if (is_inner && static_cast<int>(multiplicity(knots, knot)) + 2 > degree) out.push_back(knot);
+    if (is_inner && static_cast<int>(std::ranges::count(knots, knot)) + 2 > degree) out.push_back(knot);
   }
   return out;
 }
