@@ -21,6 +21,15 @@ double extent(const EdgeCurve& curve) {
   return sum;
 }
 
+/// Whether a line is a part of the seam of a surface that closes: it joins loops that go around the surface.
+bool is_seam(const TrimRegion::Impl& region, const TrimPiece& piece) {
+  const auto runs_along = [](const CutAxis& axis, double a, double b) {
+    return axis.periodic && a == b && (a == axis.from() || a == axis.to());
+  };
+  const ParameterPoint &a = piece.start(), &b = piece.end();
+  return runs_along(region.lines.u, a.u, b.u) || runs_along(region.lines.v, a.v, b.v);
+}
+
 }  // namespace
 
 LoopPoint loop_point(const SetView& set, const SceneFrame& frame, const TrimPiece& piece, std::uint32_t patch,
@@ -118,6 +127,7 @@ void EdgeCurves::find_bridges() {
   const auto is_free = [&](std::uint32_t face, const ParameterPoint& point) { return touching(face, point).empty(); };
   for (const EdgeRun& run : runs_.gaps())
     for (const TrimPiece& piece : runs_.pieces(run)) {
+      if (is_seam(impl_of(edges_->faces[run.face].region), piece)) continue;
       EdgeStretch line{.piece = &piece, .along = {}, .patch = run.patch, .face = run.face};
       if (bridges_.empty() || bridges_.back().front().face != run.face) {
         bridges_.push_back({line});
