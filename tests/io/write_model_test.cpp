@@ -123,7 +123,9 @@ TEST_F(WriteModel, EveryFileOfOthersComesBack) {
         // Quadrics may become nets, whose loops are those of the grid.
         const auto is_quadric = [](const ModelSurface& of) { return std::holds_alternative<QuadricPiece>(of.surface); };
         const bool by_grid = is_quadric(named) && !is_quadric(read.surfaces[k]);
-        EXPECT_EQ(read.surfaces[k].trims, by_grid ? value_of(grid_trims(named)) : named.trims) << file;
+        std::vector<TrimLoop> loops = by_grid ? *value_of(grid_trims(named)) : *named.trims;
+        for (TrimLoop& loop : loops) loop.coedges.clear();  // the formats have no edges
+        EXPECT_EQ(*read.surfaces[k].trims, loops) << file;
         trims += named.trims->size();
       }
     }
