@@ -7,6 +7,7 @@
 #include "io/file/gzip.h"
 #include "io/file/zip.h"
 #include "io/mesh/mesh_formats.h"
+#include "io/step/read_step.h"
 #include "tessera/io.h"
 
 namespace {

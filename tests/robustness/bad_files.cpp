@@ -7,6 +7,7 @@
 #include "io/mesh/mesh_formats.h"
 #include "robustness/bad_assemblies.h"
 #include "robustness/bad_input.h"
+#include "robustness/bad_step.h"
 #include "support/random_patches.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
@@ -115,6 +116,12 @@ void scene_texts(Table& table) {
   json.row("a circle of radius 0",
            trimmed("[{\"curves\": [{\"kind\": \"circle\", \"center\": [0,0], \"radius\": 0}]}]"), invalid_argument);
   json.row("10,000 brackets", std::string(10000, '['), parse_error);
+}
+
+void step_texts(Table& table) {
+  Texts step(table, parse_step, "read_cad(\"m.stp\"), parse_cad(text, \"m.stp\")");
+  step_rows([&](const std::string& input, const std::string& text, StatusCode code) { step.row(input, text, code); });
+  step_answers(table);
 }
 
 void mesh_texts(Table& table) {
@@ -257,6 +264,7 @@ void writing(Table& table) {
 void fill_readers(Table& table) {
   bezier_texts(table);
   scene_texts(table);
+  step_texts(table);
   mesh_texts(table);
 }
 

@@ -39,7 +39,7 @@ class LobattoFit {
   /// - `is_near(a, b)`: whether two points are near enough.
   /// - `breaks`: the ends of the interval and the parameters between them where the curve is less smooth, in order. An
   ///   interval is divided at the middle one, or else halved at most 10 times, until the polynomial is near. After
-  ///   5000 points no interval is halved.
+  ///   2000 points no interval is halved.
   template <class At, class IsNear>
   void follow(const At& at, const IsNear& is_near, std::span<const double> breaks) {
     const double from = breaks.front(), to = breaks.back();
@@ -63,7 +63,7 @@ class LobattoFit {
 
  private:
   static constexpr int max_depth = 10;
-  static constexpr std::size_t max_points = 5000;
+  static constexpr std::size_t max_points = 2000;
   struct Ends {
     Vec3 first, last;
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -31,17 +32,8 @@ class StepModel {
       const auto [known, is_new] = shapes_.try_emplace(key_of(place), readings_.size());
       if (is_new) readings_.push_back({&place, {}, {}, {}});
     }
-    const Status status = parallel_for(readings_.size(), 1, execution_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) read(readings_[k]);
-    });
-    if (!status.ok()) return status;
-    for (Reading& one : readings_) {
-      if (!one.status.ok()) return one.status;
-      add(one.faults);
-      if (one.shape.faces.empty()) continue;
-      one.index = static_cast<std::uint32_t>(model_.shapes.size());
-      model_.shapes.push_back(std::move(one.shape));
-    }
+    for (std::size_t first = 0; first < readings_.size(); first += read_at_once)
+      if (Status status = read_shapes(std::span(readings_).subspan(first)); !status.ok()) return status;
     return {};
   }
 
@@ -87,7 +79,7 @@ class StepModel {
   }
 
  private:
-  static constexpr std::size_t max_surfaces = std::size_t{1} << 24;
+  static constexpr std::size_t max_surfaces = std::size_t{1} << 24, read_at_once = 256;
   /// Part, colours and side: places with one key have one shape.
   using Key = std::tuple<std::size_t, std::size_t, bool>;
   struct Reading {
@@ -97,6 +89,30 @@ class StepModel {
     Status status;
     std::uint32_t index = no_id;  ///< into Model::shapes; no_id: it has no faces
   };
+
+  /// Reads the first ones of `readings`. Parts may share faces, and one part may have several colours, but a file must
+  /// not grow by that.
+  Status read_shapes(std::span<Reading> readings) {
+    readings = readings.first(std::min(readings.size(), read_at_once));
+    const Status status = parallel_for(readings.size(), 1, execution_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) read(readings[k]);
+    });
+    if (!status.ok()) return status;
+    const std::size_t instances = index_.instances().size(), most = 32 * instances + (std::size_t{1} << 12);
+    for (Reading& one : readings) {
+      if (!one.status.ok()) return one.status;
+      read_ += one.shape.faces.size() + one.shape.edges.size() + one.faults.left_out.size();
+      if (read_ > most)
+        return Status(StatusCode::unsupported, "it has " + counted(instances, "instance") +
+                                                   ", but its parts have more than " + std::to_string(most) +
+                                                   " faces and edges");
+      add(one.faults);
+      if (one.shape.faces.empty()) continue;
+      one.index = static_cast<std::uint32_t>(model_.shapes.size());
+      model_.shapes.push_back(std::move(one.shape));
+    }
+    return {};
+  }
 
   static Key key_of(const StepPlacedPart& place) { return {place.part, place.colours, place.is_mirrored()}; }
 
@@ -152,6 +168,7 @@ class StepModel {
   const Execution execution_;
   Model model_;
   std::size_t surfaces_ = 0;  ///< of all instances so far
+  std::size_t read_ = 0;      ///< faces and edges of all shapes so far
   std::map<Key, std::size_t> shapes_;
   std::vector<Reading> readings_;
   StepShapeFaults faults_;

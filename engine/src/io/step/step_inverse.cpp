@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -212,15 +213,17 @@ class SweptInverse : public SurfaceInverse {
     const auto at_t = [&](double t) { return flat(t); };
     const double period = sweep_.is_turned ? period_.v : period_.u;
     double best = 0;
-    bool found = false;
+    double distance = std::numeric_limits<double>::infinity();
     if (near) {
       // A step beyond an end of a closed profile goes on at the other one.
       best = refined_foot(at_t, goal, d, wrapped(*near));
-      found = length(flat(best).point - goal) <= tolerance_;
+      distance = length(flat(best).point - goal);
     }
-    if (!found) {
+    if (!(distance <= std::max(tolerance_, off_))) {
       const double other = nearest_foot(at_t, goal, d, parameters_, points_);
-      if (!near || length(flat(other).point - goal) < length(flat(best).point - goal)) best = other;
+      const double nearest = length(flat(other).point - goal);
+      if (near && !(nearest < 0.5 * distance)) off_ = 1.5 * distance;
+      if (!near || nearest < distance) best = other;
     }
     return period > 0 && near ? best + period * std::round((*near - best) / period) : best;
   }
@@ -230,6 +233,7 @@ class SweptInverse : public SurfaceInverse {
   FastCurve fast_;
   std::vector<double> parameters_;
   std::vector<Vec3> points_;  ///< in the plane
+  mutable double off_ = 0;    ///< as in SplineInverse; an inverse serves one thread
 
  public:
   void set_tolerance(double tolerance) { tolerance_ = tolerance; }

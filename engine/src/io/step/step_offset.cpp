@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/exact/spline_jets.h"
 #include "tessera/convert.h"
 #include "tessera/parametric_surface.h"
 
@@ -66,10 +67,11 @@ Result<StepElementary> offset_by(const StepElementary& of, double distance) {
 }
 
 Result<FaceSurface> offset_by(const BSplineSurface& of, double distance, double tolerance) {
+  const FastSurface basis(of);
   SurfaceFunctions functions;
   functions.position = [&](double u, double v) {
-    const SurfaceJet jet = evaluate_jet(of, u, v);
-    return jet.position + distance * normalized(cross(jet.du, jet.dv));
+    const SurfacePlace place = basis(u, v);
+    return place.point + distance * normalized(cross(place.du, place.dv));
   };
   const Domain& d = of.domain();
   const Result<ParametricSurface> surface = ParametricSurface::make(functions, d);

@@ -31,6 +31,14 @@ Vec3 coordinates(StepEntity& entity, int dimension) {
   return entity.status().ok() ? Vec3{c[0], c[1], dimension == 3 ? c[2] : 0} : Vec3{};
 }
 
+/// Reads a place, likewise. Squares of distances must be finite.
+Vec3 place_of(StepEntity& entity, const StepUnits& units) {
+  constexpr double farthest = 1e150;
+  const Vec3 out = units.length * coordinates(entity, units.dimension);
+  if (!(max_abs(out) <= farthest)) entity.fail("its coordinates are too large", StatusCode::non_finite);
+  return out;
+}
+
 /// Fails if the entity, which is read already, is of another kind.
 void require(StepEntity& entity, std::string_view kind) {
   if (!entity.is(kind)) entity.fail("expected " + std::string(kind));
@@ -41,8 +49,7 @@ void require(StepEntity& entity, std::string_view kind) {
 Result<Vec3> StepPoints::point(std::uint64_t number) const {
   StepEntity entity(index_, number);
   require(entity, "CARTESIAN_POINT");
-  const Vec3 p = units_.length * coordinates(entity, units_.dimension);
-  if (!is_finite(p)) entity.fail("its coordinates are too large", StatusCode::non_finite);
+  const Vec3 p = place_of(entity, units_);
   if (!entity.status().ok()) return entity.status();
   return p;
 }
@@ -57,7 +64,7 @@ Result<std::vector<Vec3>> StepPoints::points(StepEntity& owner, std::size_t list
   for (const std::uint64_t number : numbers) {
     entity.read(number);
     require(entity, "CARTESIAN_POINT");
-    out.push_back(units_.length * coordinates(entity, units_.dimension));
+    out.push_back(place_of(entity, units_));
     if (!entity.status().ok()) return entity.status();
   }
   return out;

@@ -1,6 +1,7 @@
 #include "io/step/step_shape.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -89,8 +90,9 @@ class ShapeMaker {
       if (!edge.status.ok() || edge.start != edge.end || !faults[edge.start].ok()) continue;
       const Vec3 end = shape_.vertices[edge.start].position;
       const Result<StepEdgeCurve> made = geometry_.edge_curve(edge.curve, {end, end}, edge.agrees, everything);
-      if (!made) continue;
-      for (const Vec3& p : made->curve.curve.points()) box.extend(p);
+      constexpr double farthest = 1e150;  // as for points
+      for (const Vec3& p : made ? made->curve.curve.points() : std::span<const Vec3>())
+        if (max_abs(p) <= farthest) box.extend(p);
     }
   }
 
@@ -137,17 +139,26 @@ class ShapeMaker {
       for (const StepBound& bound : face.bounds)
         for (const StepEdgeUse& use : bound.uses)
           if (face.status.ok()) face.status = topology_.edges[use.edge].status;
-    return parallel_for(topology_.faces.size(), 4, execution_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
+    // Each face has a copy of its surface, but a file must not grow by that. Fits have a limit of their own.
+    const std::size_t max_points = 64 * index_.instances().size() + (std::size_t{1} << 22);
+    std::atomic<std::size_t> points = 0;
+    Status status = parallel_for(topology_.faces.size(), 4, execution_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end && points <= max_points; ++k) {
         StepFace& face = topology_.faces[k];
         if (!face.status.ok()) continue;
         Result<StepFaceResult> made = step_face(face, context);
-        if (made)
-          results_[k] = *std::move(made);
-        else
+        if (!made) {
           face.status = made.status();
+          continue;
+        }
+        if (made->fit_error == 0) points += made->surface.points().size();
+        results_[k] = *std::move(made);
       }
     });
+    if (status.ok() && points > max_points)
+      return {StatusCode::unsupported,
+              "the surfaces of a part have more than " + std::to_string(max_points) + " control points"};
+    return status;
   }
 
   /// "face #51 (nut)".

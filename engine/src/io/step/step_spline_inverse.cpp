@@ -47,8 +47,11 @@ class SplineInverse : public SurfaceInverse {
 
   ParameterPoint at(const Vec3& p, const ParameterPoint& near) const override {
     Foot foot = refined(p, inside(near));
-    if (!(foot.distance <= 4 * tolerance_))
-      if (const Foot other = found(p); other.distance < foot.distance) foot = other;
+    if (!(foot.distance <= std::max(4 * tolerance_, off_))) {
+      const Foot other = found(p);
+      if (!(other.distance < 0.5 * foot.distance)) off_ = 1.5 * foot.distance;
+      if (other.distance < foot.distance) foot = other;
+    }
     return beside(foot.place, near);
   }
   ParameterPoint find(const Vec3& p) const override { return found(p).place; }
@@ -188,6 +191,8 @@ class SplineInverse : public SurfaceInverse {
 
   BSplineSurface surface_;
   FastSurface at_;
+  /// How far edges are off the surface, as searches among all samples found: steps that end so near need no search.
+  mutable double off_ = 0;
   mutable std::vector<double> grid_u_, grid_v_;  ///< made when they are needed; an inverse serves one thread
   mutable std::vector<Vec3> samples_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -60,12 +61,16 @@ class FaceWalk {
     bool reversed = false;
   };
   static constexpr int max_depth = 16;
-  /// Wholes may share faces, but a file must not grow by that.
-  std::size_t max_faces() const { return 2 * index_.instances().size(); }
+  /// Wholes may share faces and other wholes, but a file must not grow by that.
+  std::size_t max_visits() const { return 4 * index_.instances().size() + 64; }
+  bool is_full() const { return visits_ > max_visits(); }
 
   void add(std::uint64_t number, Place place, int depth) {
+    if (is_full()) return;
     StepEntity entity(index_, number);
     if (depth > max_depth) entity.fail("is made of too many wholes, or of itself");
+    if (++visits_ > max_visits()) entity.fail("holds the same faces too often", StatusCode::unsupported);
+    if (!entity.status().ok()) return out_.unread.push_back(entity.status().message());
     if (is_face(entity)) return add_face(number, 0, place);
     if (entity.is("ORIENTED_FACE") || is_oriented_shell(entity)) {
       const std::uint64_t inner = entity.reference(entity.attribute(2));
@@ -75,11 +80,11 @@ class FaceWalk {
     }
     const std::uint32_t above = std::exchange(place.whole, static_cast<std::uint32_t>(out_.wholes.size()));
     const std::vector<std::uint64_t> parts = parts_of(entity, place);
-    if (out_.faces.size() > max_faces()) entity.fail("holds the same faces too often", StatusCode::unsupported);
     if (!entity.status().ok()) return out_.unread.push_back(entity.status().message());
     out_.wholes.push_back({number, above, place.shell, place.solid});
     const bool is_set = is_set_of_geometry(entity);
     for (const std::uint64_t part : parts) {
+      if (is_full()) return;
       if (is_set)
         add_element(part, place);
       else
@@ -109,6 +114,7 @@ class FaceWalk {
 
   /// Adds an element of a set if it is a surface; curves and points are passed over.
   void add_element(std::uint64_t number, const Place& place) {
+    ++visits_;
     const StepEntity entity(index_, number);
     constexpr std::array<std::string_view, 12> surfaces{"RECTANGULAR_TRIMMED_SURFACE",
                                                         "B_SPLINE_SURFACE_WITH_KNOTS",
@@ -134,6 +140,7 @@ class FaceWalk {
 
   const StepIndex& index_;
   StepTopology& out_;
+  std::size_t visits_ = 0;
 };
 
 /// Reads one loop of a face.
@@ -191,8 +198,23 @@ class LoopReader {
   StepEntity entity_, edge_;
 };
 
+/// How many edges the loops of all faces may list: faces may share loops, but a file must not grow by that.
+class EdgeBudget {
+ public:
+  explicit EdgeBudget(const StepIndex& index) : most_(8 * index.instances().size() + 4096) {}
+  bool take(std::size_t count) { return (taken_ += count) <= most_; }
+  Status status() const {
+    if (taken_ <= most_) return {};
+    return {StatusCode::unsupported, "the loops of a part list more than " + std::to_string(most_) + " edges"};
+  }
+
+ private:
+  std::size_t most_;
+  std::atomic<std::size_t> taken_ = 0;
+};
+
 /// Completes a face; a fault stays in its status.
-std::vector<RawBound> read_face(const StepIndex& index, StepFace& face) {
+std::vector<RawBound> read_face(const StepIndex& index, StepFace& face, EdgeBudget& budget) {
   std::vector<RawBound> out;
   if (face.surface != 0) return out;  // a surface alone
   StepEntity entity(index, face.number);
@@ -213,6 +235,7 @@ std::vector<RawBound> read_face(const StepIndex& index, StepFace& face) {
       face.status = bound.status();
       break;
     }
+    if (!budget.take(1 + bound->uses.size())) break;  // the part fails
     if (is_reversed) LoopReader::reverse(*bound);
     out.push_back(*std::move(bound));
   }
@@ -288,11 +311,13 @@ Result<StepTopology> StepTopology::make(const StepIndex& index, std::span<const 
   FaceWalk walk(index, out);
   for (const std::uint64_t item : items) walk.add_item(item, is_mirrored);
   constexpr std::size_t grain = 64;
+  EdgeBudget budget(index);
   std::vector<std::vector<RawBound>> bounds(out.faces.size());
   const Execution quiet{.cancel = execution.cancel};
   Status status = parallel_for(out.faces.size(), grain, quiet, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) bounds[k] = read_face(index, out.faces[k]);
+    for (std::size_t k = begin; k < end; ++k) bounds[k] = read_face(index, out.faces[k], budget);
   });
+  if (status.ok()) status = budget.status();
   if (!status.ok()) return status;
   Numbering numbering(out);
   for (std::size_t k = 0; k < out.faces.size(); ++k) numbering.add(out.faces[k], bounds[k]);

@@ -66,7 +66,8 @@ struct StepTopology {
 
   /// Reads the faces that items of a representation hold: solids, shells, shell models, sets of surfaces, faces. What
   /// cannot be read is said in `unread`, or in the face or edge; items of other kinds are passed over. If
-  /// `is_mirrored`, faces are turned around. Errors: cancelled, out_of_memory.
+  /// `is_mirrored`, faces are turned around. Errors: unsupported (loops that list the same edges far too often),
+  /// cancelled, out_of_memory.
   static Result<StepTopology> make(const StepIndex& index, std::span<const std::uint64_t> items, bool is_mirrored,
                                    const Execution& execution);
 };

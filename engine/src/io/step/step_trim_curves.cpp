@@ -132,8 +132,10 @@ Result<Curve> TrimCurveMaker::on_plane(const EdgeTrace& piece, const Curve& edge
   });
 }
 
-/// Edge parameters at which the surface's arcs meet, found between samples.
+/// Edge parameters at which the surface's arcs meet, found between samples. An edge that crosses more arcs than a
+/// surface has leaves the face's rectangle by far, and the rest of them is not looked for.
 std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curve& edge, bool along_u) const {
+  constexpr std::size_t max_crossings = 256;
   std::vector<double> out;
   const std::optional<Arcs>& arcs = along_u ? parameters_.u : parameters_.v;
   if (!arcs) return out;
@@ -146,7 +148,7 @@ std::vector<double> TrimCurveMaker::crossings(const EdgeTrace& piece, const Curv
     const TraceSample &a = piece.samples[k], &b = piece.samples[k + 1];
     const double x = along_u ? a.place.u : a.place.v, y = along_u ? b.place.u : b.place.v;
     const double step = arcs->step(), first = std::ceil((std::min(x, y) - arcs->from()) / step);
-    for (double n = first; arcs->from() + n * step < std::max(x, y); ++n) {
+    for (double n = first; out.size() < max_crossings && arcs->from() + n * step < std::max(x, y); ++n) {
       const double goal = arcs->from() + n * step;
       out.push_back(root_between({a.s, x - goal}, {b.s, y - goal}, [&](double s) { return value(s) - goal; }));
     }
