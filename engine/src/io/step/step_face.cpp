@@ -67,7 +67,7 @@ Result<StepFaceResult> step_face(const StepFace& face, const StepFaceContext& co
     if (!bound.uses.empty()) loops.push_back(tracer.loop(bound, context.reversed_curves));
   }
   const bool is_hole = keep_outside(**inverse, loops, face.agrees);
-  const Result<FaceBox> box = step_face_box(**inverse, context.edges, loops, vertices, face.agrees, context.tolerance);
+  const Result<FaceBox> box = step_face_box(**inverse, context.edges, loops, vertices, face.agrees, 1e-2 * context.tolerance);
   if (!box) return box.status();
   Result<FaceSurface> surface = (*inverse)->surface(box->domain);
   if (!surface) return surface.status();
