@@ -253,6 +253,16 @@ bool SurfaceInverse::is_pole_v(const ParameterPoint& place) const {
 
 std::unique_ptr<SurfaceInverse> make_spline_inverse(BSplineSurface surface, double tolerance);
 
+std::unique_ptr<SurfaceInverse> SurfaceInverse::of_plane(const Frame& frame, double tolerance) {
+  StepElementary plane;
+  plane.frame = frame;
+  constexpr double far = std::numeric_limits<double>::infinity();
+  plane.whole = {-far, far, -far, far};
+  std::unique_ptr<SurfaceInverse> out = std::make_unique<ElementaryInverse>(plane);
+  out->tolerance_ = tolerance;
+  return out;
+}
+
 /// Makes the inverse of a surface at a distance from another: exact where that is elementary, else fitted as far as the
 /// points reach.
 Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make_offset(const StepGeometry& geometry,

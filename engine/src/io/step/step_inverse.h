@@ -33,6 +33,9 @@ class SurfaceInverse {
   /// Returns how far the surface is from the file's, where it had to be fitted.
   double fit_error() const { return fit_error_; }
 
+  /// Makes the inverse of a plane.
+  static std::unique_ptr<SurfaceInverse> of_plane(const Frame& frame, double tolerance);
+
   /// Returns the parameters of the point of the surface that is nearest to p and to the parameters `near`. Where one
   /// parameter is undefined, as at a pole, it is that of `near`.
   virtual ParameterPoint at(const Vec3& p, const ParameterPoint& near) const = 0;

@@ -221,11 +221,13 @@ std::vector<RawBound> read_face(const StepIndex& index, StepFace& face, EdgeBudg
   const bool has_parts = entity.has_parts();
   const std::size_t bounds = has_parts ? entity.attribute(entity.part("FACE"), 0) : entity.attribute(1);
   const std::vector<std::uint64_t> numbers = entity.references(bounds);
-  if (entity.is("FACE")) entity.fail("has no surface", StatusCode::unsupported);
-  const std::size_t part = has_parts ? entity.part("FACE_SURFACE") : 0, at = has_parts ? 0 : 2;
-  face.surface = entity.reference(entity.attribute(part, at));
+  const bool has_surface = has_parts ? entity.is("FACE_SURFACE") : !entity.is("FACE");
   const bool is_reversed = !face.agrees;  // by its shell
-  face.agrees = is_reversed != entity.logical(entity.attribute(part, at + 1));
+  if (has_surface) {
+    const std::size_t part = has_parts ? entity.part("FACE_SURFACE") : 0, at = has_parts ? 0 : 2;
+    face.surface = entity.reference(entity.attribute(part, at));
+    face.agrees = is_reversed != entity.logical(entity.attribute(part, at + 1));
+  }
   face.status = entity.status();
   LoopReader reader(index);
   for (const std::uint64_t number : numbers) {
@@ -239,6 +241,12 @@ std::vector<RawBound> read_face(const StepIndex& index, StepFace& face, EdgeBudg
     if (is_reversed) LoopReader::reverse(*bound);
     out.push_back(*std::move(bound));
   }
+  const auto is_polygon = [](const RawBound& bound) {
+    return std::ranges::all_of(bound.uses, [](const RawUse& use) { return use.edge == 0; }) && bound.vertex == 0;
+  };
+  face.is_polygon = !out.empty() && std::ranges::all_of(out, is_polygon);
+  if (!has_surface && !face.is_polygon && face.status.ok())
+    face.status = entity.error("has no surface", StatusCode::unsupported);
   if (!face.status.ok()) out.clear();
   return out;
 }

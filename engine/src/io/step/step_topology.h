@@ -32,6 +32,7 @@ struct StepFace {
   std::uint64_t number = 0;   ///< of the face's instance
   std::uint64_t surface = 0;  ///< of its surface's
   bool agrees = true;         ///< whether its normal is that of the surface
+  bool is_polygon = false;    ///< all of its loops are polygons; then it may have no surface
   std::vector<StepBound> bounds = {};
   std::uint32_t whole = no_id;  ///< index into StepTopology::wholes
   Status status = {};           ///< why it cannot be read
