@@ -8,6 +8,7 @@
 
 #include "io/exact/usable_edges.h"
 #include "io/step/step_face.h"
+#include "io/step/step_shell_sides.h"
 #include "io/step/step_topology.h"
 #include "parallel/parallel_for.h"
 
@@ -45,6 +46,8 @@ class ShapeMaker {
     shape_.solid_count = topology_.solid_count;
     for (const std::uint32_t solid : topology_.shells) shape_.shells.push_back({{}, solid});
     for (std::size_t k = 0; k < results_.size(); ++k) add_face(k);
+    const Result<std::size_t> turned = settle_shell_sides(shape_);
+    if (!turned) return turned.status();
     for (const UnusableEdges& one : drop_unusable_edges(shape_))
       faults_.changed.push_back(words(kept_[one.face]) + " is read without shared edges: " + one.reason);
     return std::move(shape_);
