@@ -35,8 +35,10 @@ struct StepShapeFaults {
   StatusCode first_code = StatusCode::parse_error;  ///< of the first face that is left out
 };
 
-/// Reads a part. Faces that cannot be read are left out, with a sentence in `faults`. Errors: unsupported (a part that is
-/// far larger than its file, since faces share loops or surfaces), cancelled, out_of_memory.
+/// Reads a part. Faces that cannot be read are left out, with a sentence in `faults`.
+///
+/// Errors: unsupported (a part that is far larger than its file, since faces share loops or surfaces), cancelled,
+/// out_of_memory.
 Result<Shape> step_shape(const StepIndex& index, const StepShapeInput& input, StepShapeFaults& faults,
                          const Execution& execution);
 
