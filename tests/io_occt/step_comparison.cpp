@@ -78,6 +78,36 @@ double length_of(const Curve& curve, const Interval& range) {
   return sum;
 }
 
+/// Whether both ends of a direction of a surface are one line.
+bool is_closed(const BSplineSurface& surface, bool along_u) {
+  const Domain& d = surface.domain();
+  double gap = 0, size = 0;
+  for (int k = 0; k <= 8; ++k) {
+    const double x = along_u ? d.v_at(k / 8.0) : d.u_at(k / 8.0);
+    const Vec3 a = evaluate_jet(surface, along_u ? d.u0 : x, along_u ? x : d.v0).position;
+    const Vec3 b = evaluate_jet(surface, along_u ? d.u1 : x, along_u ? x : d.v1).position;
+    const Vec3 middle = evaluate_jet(surface, d.u_at(0.4), d.v_at(k / 8.0)).position;
+    gap = std::max(gap, length(a - b)), size = std::max(size, length(a - middle));
+  }
+  return gap <= 1e-6 * size;
+}
+
+/// How far a face's loops leave its rectangle, as a share of its sides; not along directions in which it is closed.
+double excess_of(const ShapeFace& face) {
+  const auto& surface = std::get<BSplineSurface>(face.surface);
+  const Domain& d = surface.domain();
+  const bool closed_u = is_closed(surface, true), closed_v = is_closed(surface, false);
+  double excess = 0;
+  for (const TrimLoop& loop : edge_loops(face))
+    for (const Curve& curve : loop.curves)
+      for (int k = 0; k <= 512; ++k) {
+        const Vec3 p = position(curve, curve.domain().from + (curve.domain().to - curve.domain().from) * k / 512);
+        if (!closed_u) excess = std::max({excess, (d.u0 - p.x) / (d.u1 - d.u0), (p.x - d.u1) / (d.u1 - d.u0)});
+        if (!closed_v) excess = std::max({excess, (d.v0 - p.y) / (d.v1 - d.v0), (p.y - d.v1) / (d.v1 - d.v0)});
+      }
+  return excess;
+}
+
 /// Whether one face uses an edge twice.
 bool is_seam(std::span<const EdgeUse> uses) { return uses.size() == 2 && uses[0].face == uses[1].face; }
 
@@ -209,6 +239,9 @@ class Comparison {
     differ("faces", ours.faces.size(), theirs.faces.size());
     differ("edges", facts.edges, peers.edges);
     differ("solids", ours.solid_count, theirs.solid_count);
+    for (std::size_t face = 0; face < ours.faces.size(); ++face)
+      if (const double excess = excess_of(ours.faces[face]); excess > 1e-7)
+        out_.add("rectangle", where + "face " + std::to_string(face) + ": left by " + words(excess) + " of a side");
     compare_faces(k, where);
     compare_volumes(facts, peers, where);
     const auto closed = [](const ShapeFacts& one) { return std::ranges::count(one.closed, true); };
