@@ -27,13 +27,12 @@
 #include "io_occt/cad_shapes.h"
 #include "io_occt/shape_model.h"
 #include "peers/interleaved.h"
+#include "peers/joined_shape.h"
 #include "peers/occt_shape.h"
 #include "support/synthetic_sets.h"
-#include "tessera/edge_matching.h"
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 #include "tessera/tessellation.h"
-#include "tessera/topology.h"
 
 namespace tessera::bench { namespace {
 
@@ -44,21 +43,6 @@ constexpr char usage[] =
     "Closed meshes of CAD files at ten tolerances beside OpenCASCADE's, one thread.\n"
     "Without files: all of the folder TESSERA_TEST_DATA. About 5 minutes.\n"
     "Exit status 1 if the mesh of a closed solid has an open edge.\n";
-
-/// The shape, with edges joined where some have a single face.
-Shape ready(const Shape& shape) {
-  const EdgeUses uses = value_of(edge_uses(shape));
-  bool is_open = false;
-  for (std::size_t edge = 0; edge < shape.edges.size(); ++edge)
-    is_open |= !shape.edges[edge].degenerate && uses[edge].size() == 1;
-  const double distance = is_open ? value_of(joining_distance(shape)) : 0;
-  return distance > 0 ? value_of(joined_edges(shape, distance)) : shape;
-}
-
-bool is_closed(const Shape& shape) {
-  const std::vector<bool> closed = value_of(closed_shells(shape));
-  return !closed.empty() && std::ranges::find(closed, false) == closed.end();
-}
 
 /// The meshes of a file's shapes.
 struct Row {
@@ -106,7 +90,7 @@ bool report(const std::filesystem::path& file) {
   std::size_t faces = 0, closed = 0;
   Box3 box;
   for (const Shape& shape : model->shapes) {
-    shapes.push_back(ready(shape));
+    shapes.push_back(joined_shape(shape));
     faces += shape.faces.size();
     closed += is_closed(shapes.back());
     const PatchSet set = value_of(make_patch_set(shapes.back()));

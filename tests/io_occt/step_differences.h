@@ -1,0 +1,91 @@
+#pragma once
+// The STEP files of TESSERA_TEST_DATA that Tessera and OpenCASCADE read in different ways, and who is right.
+
+#include <string_view>
+
+namespace tessera::test {
+
+/// A file's known differences.
+struct StepDifference {
+  std::string_view file;    ///< how its path ends
+  std::string_view kinds;   ///< of StepComparison::kinds, in order, with a space between
+  std::string_view reason;  ///< who is right, and why
+};
+
+constexpr std::string_view own_seam =
+    "OpenCASCADE cuts a closed edge in two where it adds a seam; Tessera has the file's edges";
+constexpr std::string_view own_pieces =
+    "the file states one solid of one closed shell; OpenCASCADE makes a solid of each of its pieces. The volumes are "
+    "equal together";
+constexpr std::string_view axis =
+    "OpenCASCADE moves the part by an axis placement that its representation lists beside it; ISO 10303-43 gives such "
+    "an item no effect on the others, and the file's edges lie where Tessera has them";
+constexpr std::string_view seam_and_axis = "a seam that OpenCASCADE adds, and an axis placement by which it moves";
+
+constexpr StepDifference step_differences[] = {
+    {"30274_ca0d10b2_1.stp", "area",
+     "OpenCASCADE is right: the loops of faces 24, 49 and 91 leave the rectangle by 8e-5, and Tessera takes the faces "
+     "whole, as the file's uncertainty of 0.01 allows"},
+    {"issues_16__54360_db08c779_0036_2.step", "area",
+     "an arc of face 41 ends 9e-8 beside the corner. Of the half disc, 9.81747704, Tessera's area lacks 2.6e-7 and "
+     "OpenCASCADE's has 6.8e-7 too much"},
+    {"elliptical-cone-z30-cut15-v1__shape.step", "area volume",
+     "OpenCASCADE is right: Tessera's rectangle of the flat faces cuts their ellipses off by 4e-4 of a side"},
+    {"elliptical-tube-12x7x25-v1__shape.step", "area volume",
+     "OpenCASCADE is right: the flat faces have the area 84 pi, and Tessera's rectangle cuts them off by 4e-4 of a "
+     "side"},
+    {"Torus__dobleCodo.stp", "solids",
+     "the file states one BREP_WITH_VOIDS of four shells that lie beside each other; OpenCASCADE makes four solids"},
+    {"wallcut_tool_0.step", "shells solids", own_pieces},
+    {"ap214_collapsed_wavy_periodic_band.stp", "edges places", seam_and_axis},
+    {"ap214_conical_closed_edge_band.stp", "places", axis},
+    {"ap214_contractible_periodic_neighbor.stp", "edges", own_seam},
+    {"ap214_face_wr2_off_surface_torus_invalid.stp", "read by OpenCASCADE alone",
+     "the file is invalid on purpose: the face's loop lies off its torus"},
+    {"ap214_four_face_keyhole.stp", "shells solids",
+     "the file's closed shell is open; OpenCASCADE makes two shells of no solid, Tessera has the file's"},
+    {"ap214_horn_torus_keyhole.stp", "places", axis},
+    {"ap214_lazy_many_solids.stp", "edges",
+     "64 solids of the file have the same six edges; OpenCASCADE makes six for each solid"},
+    {"ap214_measured_periodic_winding.stp", "edges", own_seam},
+    {"ap214_negative_spindle_torus.stp", "read by OpenCASCADE alone",
+     "the file is invalid: ISO 10303-42 wants a positive radius, it states -10"},
+    {"ap214_nurbs_terminal_extension.stp", "read by OpenCASCADE alone",
+     "the file is invalid on purpose: an edge between two vertices in one place has an open curve"},
+    {"ap214_offset_vertex_periodic_band.stp", "places", axis},
+    {"ap214_parallel_failure.stp", "solids",
+     "the file's first solid has an open shell; OpenCASCADE makes no solid of it, Tessera has the file's"},
+    {"ap214_periodic_face_branch.stp", "edges places", seam_and_axis},
+    {"ap214_permissive_shared_dangling_spur.stp", "edges volume",
+     "a loop of the file runs along an edge and back; OpenCASCADE leaves that edge out, so that its solid is closed. "
+     "Tessera keeps the file's edge, and its solid is open"},
+    {"ap214_representation_tolerance_periodic_cap.stp", "edges", own_seam},
+    {"ap214_shared_conical_surface_bands.stp", "places shells",
+     "an axis placement by which OpenCASCADE moves the part; it also splits the file's open shell in two"},
+    {"ap214_shared_periodic_edge.stp", "edges", own_seam},
+    {"ap214_shifted_two_arc_sphere.stp", "edges", own_seam},
+    {"ap214_spherical_antipodal_boundary.stp", "edges solids",
+     "OpenCASCADE adds the pole's edges, and makes no solid of the file's solid, whose shell is open"},
+    {"ap214_surface_shells.stp", "edges faces mesh shells volume warnings",
+     "OpenCASCADE reads a SURFACE_REPLICA, which Tessera leaves out with a warning"},
+    {"ap203_doubly_periodic_segmented_band.stp", "edges", own_seam},
+    {"ap203_faceted_tetra.stp", "read by Tessera alone", "OpenCASCADE does not read a FACETED_BREP of FACE_SURFACE"},
+    {"ap203_false_face_closed_edge_use.stp", "places", axis},
+    {"ap203_mapped_assembly.stp", "read by Tessera alone", "OpenCASCADE does not read a FACETED_BREP of FACE_SURFACE"},
+    {"ap203_shared_periodic_boundary_split.stp", "edges", own_seam},
+    {"ap203_single_singular_periodic_branch.stp", "places", axis},
+    {"ap203_toroidal_band_topology_seam.stp", "edges", own_seam},
+    {"gmsh/benchmarks__step__wing_fuselage.step", "gap",
+     "OpenCASCADE is right: Tessera's curve of edge 1 in face 4 of the second shape leaves the edge by 0.12"},
+    {"kcl-samples/step__3d-boaty.step", "area edges faces",
+     "a hole of the file crosses itself at a corner; OpenCASCADE makes a face of the crossing. Its areas are right (by "
+     "Green's formula along the loops), the measures of Tessera's crossed loops are not, and are called unproven"},
+    {"kcl-samples/step__car-wheel-assembly.step", "area shells solids volume",
+     "the file states a solid of two pieces as one, of which OpenCASCADE makes two. Of the flat faces of shapes 18 to "
+     "32 OpenCASCADE's areas are right: Tessera's rectangles cut them off by 6e-5 of a side"},
+    {"kcl-samples/step__enclosure.step", "shells solids", own_pieces},
+    {"kcl-samples/step__poopy-shoe.step", "shells solids", own_pieces},
+    {"ap214_periodic_edge_propagation.stp", "edges places", seam_and_axis},
+};
+
+}  // namespace tessera::test
