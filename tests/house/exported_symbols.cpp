@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 40> internal_export{
+constexpr std::array<std::string_view, 41> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -39,6 +39,7 @@ constexpr std::array<std::string_view, 40> internal_export{
     "tessera::piece_directions",
     "tessera::lobatto_parameters",
     "tessera::lobatto_to_bernstein",
+    "tessera::LobattoTables::of_degree_7",
     "tessera::io_failure",
     "tessera::OutputFile::make",
     "tessera::OutputFile::OutputFile",

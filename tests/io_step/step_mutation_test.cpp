@@ -103,4 +103,14 @@ TEST(StepMutations, EndAsErrorsOrUsableModels) {
   EXPECT_GT(ends["a model"] + ends["a model with warnings"], count / 4);
 }
 
+TEST(StepMutations, TruncatedTextsEndAsErrorsOrUsableModels) {
+  std::map<std::string, std::size_t> ends;
+  for (const std::string& text : seeds())
+    for (std::size_t length = 0; length < text.size() && !HasFailure(); length += 97) {
+      SCOPED_TRACE(text.substr(0, length));
+      ++ends[end_of(text.substr(0, length))];
+    }
+  EXPECT_GT(ends["an error"], 100u);
+}
+
 }}  // namespace tessera::test

@@ -40,9 +40,10 @@ StepOwnEdge pole_edge(std::uint32_t vertex, const StepOwnEdge::Use& use) {
 /// A surface that is a face by itself.
 Result<StepFaceResult> whole_surface(const StepFace& face, BSplineSurface surface, double tolerance) {
   StepFaceResult out{std::move(surface), {}, true, {}, 0};
-  if (Status status = add_outline(out, tolerance); !status.ok()) return status;
+  // Before it has an outline, which runs counter-clockwise on the turned surface.
   if (!face.agrees)
     if (Status status = turn_around(out.surface, out.loops); !status.ok()) return status;
+  if (Status status = add_outline(out, tolerance); !status.ok()) return status;
   return out;
 }
 
