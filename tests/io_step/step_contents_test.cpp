@@ -4,8 +4,7 @@
 
 #include "support/synthetic_sets.h"
 
-namespace tessera::test {
-namespace {
+namespace tessera::test { namespace {
 
 TEST(StepContents, CountsEntitiesByKind) {
   const StepIndex index = value_of(StepIndex::make(
@@ -18,5 +17,4 @@ TEST(StepContents, CountsEntitiesByKind) {
   EXPECT_EQ(contents_of({}), "");
 }
 
-}  // namespace
-}  // namespace tessera::test
+}}  // namespace tessera::test

@@ -182,8 +182,8 @@ TEST_F(Parts, TooSmallTolerancesAndLimitsAreRefused) {
   place({{}, Affine::translated({1e6, 0, 0})});
   const ToolRun flat = tessellate("a.ply", {"--tolerance", "0.01", "--precision", "float"});
   EXPECT_EQ(flat.status, 1);
-  EXPECT_EQ(
-      flat.errors.find("tessera: part.igs: the tolerance 0.01 must be above 0.06, the rounding of all instances"), 0u)
+  EXPECT_EQ(flat.errors.find("tessera: part.igs: the tolerance 0.01 must be above 0.06, the rounding of all instances"),
+            0u)
       << flat.errors;
   EXPECT_LE(facts("a.ply", {"--tolerance", "0.01", "--precision", "double"})["bound"], 0.01);
   EXPECT_LE(facts("a.glb", {"--tolerance", "0.0001"})["bound"], 0.0001);

@@ -39,7 +39,8 @@ double least_value(const Function& f, double from, double to) {
       p = q > 0 ? -p : p;
       q = std::abs(q);
     }
-    const bool is_parabola = q > 0 && std::abs(p) < std::abs(0.5 * q * before) && p > q * (from - x) && p < q * (to - x);
+    const bool is_parabola =
+        q > 0 && std::abs(p) < std::abs(0.5 * q * before) && p > q * (from - x) && p < q * (to - x);
     before = is_parabola ? step : (x < middle ? to - x : from - x);
     step = is_parabola ? p / q : golden * before;
     const double u = x + (std::abs(step) >= tiny ? step : std::copysign(tiny, step)), fu = f(u);

@@ -78,8 +78,12 @@ class FaceWalk {
       if (!entity.status().ok()) return out_.unread.push_back(entity.status().message());
       return add(inner, place, depth + 1);
     }
+    if (!is_solid(entity) && !is_shell(entity) && !is_model(entity) && !is_set_of_geometry(entity)) {
+      if (depth > 0) out_.unread.push_back(entity.error("is no face, shell or set of faces").message());
+      return;
+    }
     const std::uint32_t above = std::exchange(place.whole, static_cast<std::uint32_t>(out_.wholes.size()));
-    const std::vector<std::uint64_t> parts = parts_of(entity, place);
+    const std::vector<std::uint64_t> parts = parts_of(entity, number, place);
     if (!entity.status().ok()) return out_.unread.push_back(entity.status().message());
     out_.wholes.push_back({number, above, place.shell, place.solid});
     const bool is_set = is_set_of_geometry(entity);
@@ -93,7 +97,7 @@ class FaceWalk {
   }
 
   /// Returns what a whole holds, and enters the solid or the shell that it is.
-  std::vector<std::uint64_t> parts_of(StepEntity& entity, Place& place) {
+  std::vector<std::uint64_t> parts_of(StepEntity& entity, std::uint64_t number, Place& place) {
     if (is_solid(entity)) {
       place.solid = out_.solid_count++;
       std::vector<std::uint64_t> parts{entity.reference(own_attribute(entity, "MANIFOLD_SOLID_BREP", 0))};
@@ -106,10 +110,25 @@ class FaceWalk {
     if (is_shell(entity)) {
       place.shell = static_cast<std::uint32_t>(out_.shells.size());
       out_.shells.push_back(place.solid);
-      return entity.references(own_attribute(entity, "CONNECTED_FACE_SET", 0));
+      return usable_references(entity, number, own_attribute(entity, "CONNECTED_FACE_SET", 0));
     }
     if (is_model(entity) || is_set_of_geometry(entity)) return entity.references(entity.attribute(1));
     return {};
+  }
+
+  /// Returns the references of a list to instances of the file; others are said in `unread`.
+  std::vector<std::uint64_t> usable_references(StepEntity& entity, std::uint64_t number, std::size_t list) {
+    std::vector<std::uint64_t> out;
+    for (const std::size_t k : entity.list(list)) {
+      const std::uint64_t one = entity.reference(k);
+      if (entity.status().ok()) {
+        out.push_back(one);
+        continue;
+      }
+      out_.unread.push_back(entity.status().message());
+      entity.read(number);  // forgets the error
+    }
+    return out;
   }
 
   /// Adds an element of a set if it is a surface; curves and points are passed over.
