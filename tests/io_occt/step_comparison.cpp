@@ -92,22 +92,6 @@ bool is_closed(const BSplineSurface& surface, bool along_u) {
   return gap <= 1e-6 * size;
 }
 
-/// How far a face's loops leave its rectangle, as a share of its sides; not along directions in which it is closed.
-double excess_of(const ShapeFace& face) {
-  const auto& surface = std::get<BSplineSurface>(face.surface);
-  const Domain& d = surface.domain();
-  const bool closed_u = is_closed(surface, true), closed_v = is_closed(surface, false);
-  double excess = 0;
-  for (const TrimLoop& loop : edge_loops(face))
-    for (const Curve& curve : loop.curves)
-      for (int k = 0; k <= 512; ++k) {
-        const Vec3 p = position(curve, curve.domain().from + (curve.domain().to - curve.domain().from) * k / 512);
-        if (!closed_u) excess = std::max({excess, (d.u0 - p.x) / (d.u1 - d.u0), (p.x - d.u1) / (d.u1 - d.u0)});
-        if (!closed_v) excess = std::max({excess, (d.v0 - p.y) / (d.v1 - d.v0), (p.y - d.v1) / (d.v1 - d.v0)});
-      }
-  return excess;
-}
-
 /// Whether one face uses an edge twice.
 bool is_seam(std::span<const EdgeUse> uses) { return uses.size() == 2 && uses[0].face == uses[1].face; }
 
@@ -133,6 +117,34 @@ double slack_of(const Shape& shape, const ShapeFace& face) {
       corners += distance_from_vertices(shape, edge);
     }
   return beside + longest * corners;
+}
+
+/// How far a face's loops leave its rectangle, in length; not along directions in which it is closed.
+double excess_of(const ShapeFace& face) {
+  const auto& surface = std::get<BSplineSurface>(face.surface);
+  const Domain& d = surface.domain();
+  const bool closed_u = is_closed(surface, true), closed_v = is_closed(surface, false);
+  double u = 0, v = 0;
+  for (const TrimLoop& loop : edge_loops(face))
+    for (const Curve& curve : loop.curves)
+      for (int k = 0; k <= 512; ++k) {
+        const Vec3 p = position(curve, curve.domain().from + (curve.domain().to - curve.domain().from) * k / 512);
+        if (!closed_u) u = std::max({u, d.u0 - p.x, p.x - d.u1});
+        if (!closed_v) v = std::max({v, d.v0 - p.y, p.y - d.v1});
+      }
+  const SurfaceJet middle = evaluate_jet(surface, d.u_at(0.5), d.v_at(0.5));
+  return std::max(u * length(middle.du), v * length(middle.dv));
+}
+
+/// The largest distance of a face's loops from their edges.
+double deviation_of(const Shape& shape, const ShapeFace& face) {
+  double largest = 0;
+  for (const TrimLoop& loop : edge_loops(face))
+    for (std::size_t k = 0; k < loop.coedges.size(); ++k) {
+      const BrepEdge& edge = shape.edges[loop.coedges[k].edge];
+      if (!edge.degenerate && edge.curve) largest = std::max(largest, distance_from_edge(face, loop, k, edge));
+    }
+  return largest;
 }
 
 std::optional<std::size_t> open_edges_of(const Shape& stated, double tolerance) {
@@ -240,8 +252,9 @@ class Comparison {
     differ("edges", facts.edges, peers.edges);
     differ("solids", ours.solid_count, theirs.solid_count);
     for (std::size_t face = 0; face < ours.faces.size(); ++face)
-      if (const double excess = excess_of(ours.faces[face]); excess > 1e-7)
-        out_.add("rectangle", where + "face " + std::to_string(face) + ": left by " + words(excess) + " of a side");
+      if (const double excess = excess_of(ours.faces[face]);
+          excess > 1e-7 * facts.size + deviation_of(ours, ours.faces[face]))
+        out_.add("rectangle", where + "face " + std::to_string(face) + ": a loop is " + words(excess) + " outside");
     compare_faces(k, where);
     compare_volumes(facts, peers, where);
     const auto closed = [](const ShapeFacts& one) { return std::ranges::count(one.closed, true); };

@@ -29,7 +29,7 @@ struct StepComparison {
 /// - Areas of faces, in the order of each shape or else as near as any, and volumes of solids: within the errors of the
 ///   measures, and within the area that lies between both models' curves of a face's edges.
 /// - Places: the centroids of all faces of all instances.
-/// - Loops stay within the rectangles of Tessera's faces, to 1e-7 of the sides.
+/// - Loops leave the rectangles of Tessera's faces by no more than they leave their edges, and 1e-7 of the size.
 /// - Shells are closed where OpenCASCADE's are, and so are meshes at 1e-3 of the size. Gaps are not larger than 1.5
 ///   times OpenCASCADE's plus 1e-6 of the size.
 StepComparison compare_models(const Result<Model>& ours, const Result<Model>& theirs);
