@@ -154,12 +154,19 @@ class StepModel {
     const std::vector<std::string>& left_out = faults_.left_out;
     const std::string contents = contents_of(kinds);
     if (left_out.empty())
-      return Status(StatusCode::parse_error,
-                    name_ + ": it holds no surfaces" + (contents.empty() ? "" : " (" + contents + ")"));
+      return Status(StatusCode::parse_error, name_ + ": it holds no surfaces" +
+                                                 (contents.empty() ? "" : " (" + contents + ")") + first_remark());
     const std::size_t more = left_out.size() - 1;
     const std::string others = more == 0 ? "" : " (and " + counted(more, "message") + " more)";
     return Status(faults_.first_code, name_ + ": no surface can be read: " + left_out[0] + others +
                                           (contents.empty() ? "" : "; the file holds " + contents));
+  }
+
+  /// The first fault of the file that may be why it holds no surfaces, such as its early end.
+  std::string first_remark() const {
+    if (!index_.remarks().empty())
+      return "; line " + std::to_string(index_.remarks()[0].line) + ": " + index_.remarks()[0].text;
+    return tree_.remarks.texts.empty() ? std::string() : "; " + tree_.remarks.texts[0];
   }
 
   const StepIndex& index_;
