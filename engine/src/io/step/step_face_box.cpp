@@ -97,12 +97,13 @@ class ExtentFinder {
     const std::vector<TraceSample>& samples = piece.samples;
     const std::size_t last = samples.size() - 1;
     const auto value = [&](std::size_t k) { return sign * of(samples[k].place, along_); };
+    if (is_end_of_surface(sign, most)) return most;
     double out = most;
     for (std::size_t k = 0; k <= last; ++k) {
       const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, last);
       const double step = std::max(value(k) - value(before), value(k) - value(after));
       const bool is_peak = value(k) >= value(before) && value(k) >= value(after);
-      if (!is_peak || value(k) + step <= most) continue;
+      if (!is_peak || value(k) + step <= most || ((k == 0 || k == last) && falls_from(samples, k == 0, value))) continue;
       const auto negative = [&](double s) { return -sign * of(inverse_.at(curve.point(s), samples[k].place), along_); };
       const double from = samples[before].s, to = samples[after].s, here = samples[k].s;
       // From an end, the curve may fall at once.
@@ -110,6 +111,26 @@ class ExtentFinder {
       out = std::max(out, -least_value(negative, std::min(from, to), std::max(from, to)));
     }
     return out;
+  }
+
+  /// Whether nothing can be beyond a value: the surface ends there.
+  bool is_end_of_surface(double sign, double value) const {
+    if (of(inverse_.period(), along_) > 0) return false;
+    const Domain& whole = inverse_.whole();
+    const double from = along_ == Along::u ? whole.u0 : whole.v0, to = along_ == Along::u ? whole.u1 : whole.v1;
+    return value >= (sign > 0 ? to : -from) - 1e-14 * (to - from);
+  }
+
+  /// Whether the parabola through the first (or the last) three samples falls from the end, clearly.
+  template <class Value>
+  static bool falls_from(const std::vector<TraceSample>& samples, bool at_start, const Value& value) {
+    if (samples.size() < 3) return false;
+    const auto place = [&](std::size_t k) { return at_start ? k : samples.size() - 1 - k; };
+    const double a = samples[place(1)].s - samples[place(0)].s, b = samples[place(2)].s - samples[place(0)].s;
+    const double fa = value(place(1)) - value(place(0)), fb = value(place(2)) - value(place(0));
+    if (!(fa < 0) || a == 0 || b == a) return false;
+    const double slope = (fa / a * b - fb / b * a) / (b - a);
+    return slope * a < 0.5 * fa;
   }
 
   const SurfaceInverse& inverse_;
