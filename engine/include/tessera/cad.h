@@ -96,7 +96,7 @@ struct CadOptions {
   /// or on PATH.
   std::filesystem::path reader = {};
   const std::atomic<bool>* cancel = nullptr;  ///< polled; the call then ends the program and returns cancelled
-  StepReader step_reader = StepReader::tessera;
+  StepReader step_reader = StepReader::tessera;  ///< who reads STEP; no matter for other formats
 };
 
 /// Reads a CAD file.

@@ -59,7 +59,7 @@ Result<StepFaceResult> face_on(const SurfaceInverse& inverse, const StepFace& fa
   }
   const bool is_hole = keep_outside(inverse, loops, face.agrees);
   const Result<FaceBox> box =
-      step_face_box(inverse, context.edges, loops, vertices, face.agrees, 1e-2 * context.tolerance);
+      step_face_box(inverse, context.edges, loops, vertices, face.agrees, 2e-3 * context.tolerance);
   if (!box) return box.status();
   Result<FaceSurface> surface = inverse.surface(box->domain);
   if (!surface) return surface.status();

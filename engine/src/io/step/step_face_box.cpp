@@ -103,7 +103,8 @@ class ExtentFinder {
       const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, last);
       const double step = std::max(value(k) - value(before), value(k) - value(after));
       const bool is_peak = value(k) >= value(before) && value(k) >= value(after);
-      if (!is_peak || value(k) + step <= most || ((k == 0 || k == last) && falls_from(samples, k == 0, value))) continue;
+      if (!is_peak || value(k) + step <= most || ((k == 0 || k == last) && falls_from(samples, k == 0, value)))
+        continue;
       const auto negative = [&](double s) { return -sign * of(inverse_.at(curve.point(s), samples[k].place), along_); };
       const double from = samples[before].s, to = samples[after].s, here = samples[k].s;
       // From an end, the curve may fall at once.
