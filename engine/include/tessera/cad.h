@@ -95,7 +95,7 @@ struct CadOptions {
   /// first tessera-cad-reader beside this program or library, in their ../libexec/tessera, in that of the installation,
   /// or on PATH.
   std::filesystem::path reader = {};
-  const std::atomic<bool>* cancel = nullptr;  ///< polled; the call then ends the program and returns cancelled
+  const std::atomic<bool>* cancel = nullptr;     ///< polled; the call then ends the program and returns cancelled
   StepReader step_reader = StepReader::tessera;  ///< who reads STEP; no matter for other formats
 };
 

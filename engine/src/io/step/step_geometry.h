@@ -43,6 +43,12 @@ struct StepOffset {
   double distance = 0;      ///< in the model's unit
 };
 
+/// A copy of a surface at another place.
+struct StepReplica {
+  std::uint64_t parent = 0;  ///< instance of the surface
+  Affine map;                ///< of space; scales evenly
+};
+
 /// Converts the geometry of a file. Threads: any number of calls at once. Errors: those of StepCurves and
 /// BSplineSurface.
 class StepGeometry : public StepCurves {
@@ -57,6 +63,8 @@ class StepGeometry : public StepCurves {
   ///
   /// - `extent`: the box of points of interest, which bounds profiles without ends.
   Result<std::optional<StepSweep>> sweep(std::uint64_t number, const Box3& extent) const;
+  /// Reads a copy of a surface; nothing for other kinds.
+  Result<std::optional<StepReplica>> replica(std::uint64_t number) const;
   /// Reads an offset surface; nothing for other kinds.
   Result<std::optional<StepOffset>> offset(std::uint64_t number) const;
   /// Converts a surface over a rectangle of its parameters. Without one: all of the surface, if that is bounded.

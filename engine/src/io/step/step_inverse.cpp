@@ -8,7 +8,9 @@
 
 #include "io/exact/curve_foot.h"
 #include "io/step/step_offset.h"
+#include "io/step/step_replica.h"
 #include "io/step/step_sphere_axis.h"
+#include "io/step/step_transform.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -298,10 +300,27 @@ Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make_offset(const StepGe
   return out;
 }
 
+/// Makes the inverse of a surface's copy.
+Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make_replica(const StepGeometry& geometry,
+                                                                     const StepReplica& replica, const Box3& extent,
+                                                                     double tolerance) {
+  const Affine back = inverse_place(replica.map);
+  Box3 there;
+  for (int k = 0; k < 8 && !extent.empty(); ++k)
+    there.extend(back.point({k & 1 ? extent.upper.x : extent.lower.x, k & 2 ? extent.upper.y : extent.lower.y,
+                             k & 4 ? extent.upper.z : extent.lower.z}));
+  Result<std::unique_ptr<SurfaceInverse>> parent = make(geometry, replica.parent, there, tolerance);
+  if (!parent) return parent.status();
+  return make_replica_inverse(*std::move(parent), replica.map, tolerance);
+}
+
 Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make(const StepGeometry& geometry, std::uint64_t surface,
                                                              const Box3& extent, double tolerance,
                                                              std::span<const Curve* const> borders) {
   surface = geometry.bare_surface(surface);
+  const Result<std::optional<StepReplica>> replica = geometry.replica(surface);
+  if (!replica) return replica.status();
+  if (*replica) return make_replica(geometry, **replica, extent, tolerance);
   const Result<std::optional<StepOffset>> offset = geometry.offset(surface);
   if (!offset) return offset.status();
   if (*offset) return make_offset(geometry, **offset, extent, tolerance);

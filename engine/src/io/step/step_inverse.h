@@ -70,6 +70,8 @@ class SurfaceInverse {
   double tolerance_ = 0, fit_error_ = 0;
 
  private:
+  static Result<std::unique_ptr<SurfaceInverse>> make_replica(const StepGeometry& geometry, const StepReplica& replica,
+                                                              const Box3& extent, double tolerance);
   static Result<std::unique_ptr<SurfaceInverse>> make_offset(const StepGeometry& geometry, const StepOffset& offset,
                                                              const Box3& extent, double tolerance);
 };

@@ -129,9 +129,11 @@ Result<std::optional<StepElementary>> StepGeometry::elementary(std::uint64_t num
 Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   const bool is_plane = entity.is("PLANE"), is_cone = entity.is("CONICAL_SURFACE"), is_round = is_torus(entity);
   const std::uint64_t position = entity.reference(entity.attribute(1));
-  const double given_radius = is_plane  ? 1
-                              : is_cone ? entity.real(entity.attribute(2))
-                                        : entity.positive(entity.attribute(2), "radius");
+  // A ring of negative radius is that of the positive one, half a turn away.
+  const double given_radius = is_plane   ? 1
+                              : is_cone  ? entity.real(entity.attribute(2))
+                              : is_round ? std::abs(entity.real(entity.attribute(2)))
+                                         : entity.positive(entity.attribute(2), "radius");
   StepElementary out;
   out.kind = is_plane                         ? StepElementaryKind::plane
              : is_cone                        ? StepElementaryKind::cone
@@ -141,7 +143,8 @@ Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   out.radius = units_.length * given_radius;
   out.minor = is_round ? units_.length * entity.positive(entity.attribute(3), "minor radius") : 0;
   out.half_angle = is_cone ? units_.angle * entity.real(entity.attribute(3)) : 0;
-  if (given_radius < 0) entity.fail("its radius is " + text(given_radius) + ", expected 0 or more");
+  if (given_radius < 0 || (is_round && given_radius == 0))
+    entity.fail("its radius is " + text(given_radius) + ", expected 0 or more");
   if (is_cone && !(std::abs(out.half_angle) < turn / 4))
     entity.fail("its half angle is " + text(out.half_angle) + " radians, expected less than a right angle");
   if (!entity.status().ok()) return entity.status();
