@@ -180,7 +180,7 @@ double distance_from(const Borders& borders, const Vec3& point) {
   return nearest;
 }
 
-/// What OpenCASCADE's faces of one instance answer about a point.
+/// The answers of OpenCASCADE's faces of one instance about a point.
 struct Answer {
   bool holds = false, quick = false, exact = false;  ///< whether the point is on a surface, and within its region
 };

@@ -33,7 +33,7 @@ TEST(TextEncoding, OfLatin1IsWindows1252) {
 
 TEST(TextEncoding, OfChineseIsGbk) {
   EXPECT_EQ(to_utf8("a\xD7\xB0\xC5\xE4z", TextEncoding::gbk), "a\xE8\xA3\x85\xE9\x85\x8Dz");
-  // What is no character becomes U+FFFD, also at the end; the rest stays.
+  // Bytes that are no character become U+FFFD, also at the end; the rest stays.
   EXPECT_EQ(to_utf8("a\xFFz", TextEncoding::gbk), "a\xEF\xBF\xBDz");
   EXPECT_EQ(to_utf8("a\xD7", TextEncoding::gbk), "a\xEF\xBF\xBD");
   EXPECT_EQ(to_utf8("", TextEncoding::gbk), "");

@@ -31,7 +31,7 @@ std::string words(double value) {
 
 std::string both(double ours, double theirs) { return words(ours) + ", OpenCASCADE's " + words(theirs); }
 
-/// What is measured of one shape.
+/// The measures of one shape.
 struct ShapeFacts {
   std::vector<SurfaceMeasures> faces;
   std::vector<double> slack;  ///< of each face, the area beside its edges that their gaps leave open

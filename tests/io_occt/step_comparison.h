@@ -1,5 +1,5 @@
 #pragma once
-// What both readers of STEP make of a file, compared.
+// Compares the models that both readers of STEP make of a file.
 
 #include <cstddef>
 #include <filesystem>

@@ -10,7 +10,7 @@
 
 namespace tessera::test { namespace {
 
-/// What came of a text: the error, or all warnings of the model.
+/// The outcome of a text: the error, or all warnings of the model.
 struct Ending {
   bool is_model = false;
   std::string words;

@@ -131,7 +131,7 @@ TEST(StepShells, MirroredPlacesKeepNormalsOutside) {
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
     const ModelSurface& face = model.surfaces[k];
     const Domain d = domain(face.surface);
-    // Of the shape: turned inside out, so that the mapping, which mirrors, turns its normals outwards.
+    // The shape is turned inside out, so that the mapping, which mirrors, turns its normals outwards.
     const SurfaceJet jet = value_of(evaluate_jet(face.surface, d.u_at(0.4), d.v_at(0.4)));
     EXPECT_LT(dot(cross(jet.du, jet.dv), jet.position - Vec3{2, 4, 5}), 0) << "face " << k;
   }

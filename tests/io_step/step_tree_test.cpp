@@ -75,7 +75,7 @@ TEST(StepTree, MakesOnePartOfTheShapesOfAProduct) {
   const StepTree tree = tree_of(text + product_text(10, "box", {1, 2, 1}));
   ASSERT_EQ(tree.parts.size(), 1u);
   EXPECT_EQ(tree.parts[0].items, (Numbers{921, 922}));
-  // Those of other units are parts of their own.
+  // Representations of other units are parts of their own.
   const StepTree two = tree_of(shape_text(1, {921}) + shape_text(2, {922}, 901) + product_text(10, "box", {1, 2}));
   ASSERT_EQ(two.parts.size(), 2u);
   EXPECT_EQ(two.parts[0].units.length, 1);

@@ -15,7 +15,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// What faces of one part share.
+/// Data that the faces of one part share.
 struct StepFaceContext {
   const StepGeometry& geometry;
   std::span<const BrepEdge> edges;

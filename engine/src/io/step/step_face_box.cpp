@@ -203,7 +203,7 @@ class RangeFinder {
   /// Moves loops near the widest one; a face that goes around has a whole period.
   void gather(const std::vector<Extent>& extents, std::size_t outer, Extent& out) {
     bool is_full = winds_here(loops_[outer]);
-    // Of two loops around the other parameter, the face lies after the one and before the other.
+    // Between two loops around the other parameter, the face lies after the one and before the other.
     for (std::size_t k = 0; k < loops_.size(); ++k) {
       if (k == outer) continue;
       is_full = is_full || winds_here(loops_[k]);

@@ -26,7 +26,7 @@ struct StepShapeInput {
   const StepColours* colours = nullptr;  ///< of items; may be null
 };
 
-/// What a shape lacks.
+/// Faces that a shape lacks, or has otherwise than the file.
 struct StepShapeFaults {
   std::vector<std::string> left_out;                ///< faces, one sentence each
   std::vector<std::string> changed;                 ///< faces that differ from the file, one sentence each

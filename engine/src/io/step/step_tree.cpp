@@ -14,7 +14,7 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// What the wholes that hold a whole say of it.
+/// Statements of the wholes that hold a whole, about it.
 struct Above {
   Affine place;
   std::string name;       ///< of the nearest use that has one

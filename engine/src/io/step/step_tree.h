@@ -58,8 +58,8 @@ struct StepTree {
 ///
 /// - `encoding`: of the file's texts.
 ///
-/// What is malformed, and what holds itself, is left out with a remark. Errors: unsupported (more than 2^20 places, or
-/// assemblies within each other more than 256 times), out_of_memory. Threads: any number of calls at once.
+/// Parts that are malformed or hold themselves are left out with a remark. Errors: unsupported (more than 2^20 places,
+/// or assemblies within each other more than 256 times), out_of_memory. Threads: any number of calls at once.
 Result<StepTree> read_step_tree(const StepIndex& index, TextEncoding encoding = TextEncoding::utf8);
 
 }}  // namespace tessera::abi_0_1

@@ -82,7 +82,7 @@ const ParameterPoint* TrimCurveMaker::sampled(const EdgeTrace& piece, double s, 
   return found != piece.samples.end() && std::abs(found->s - s) <= rounding ? &found->place : nullptr;
 }
 
-/// What the cubic through the four nearest samples says.
+/// Interpolates a place by the cubic through the four nearest samples.
 ParameterPoint TrimCurveMaker::near(const EdgeTrace& piece, double s) const {
   const auto before = [&](const TraceSample& sample, double value) {
     return piece.reversed ? sample.s > value : sample.s < value;

@@ -49,7 +49,7 @@ std::string lower_case(std::string_view word) {
   return out;
 }
 
-/// What the entity says of itself, by a part such as LENGTH_UNIT.
+/// The quantity that the entity measures, by a part such as LENGTH_UNIT.
 UnitKind stated_kind(const StepEntity& entity) {
   return entity.is("LENGTH_UNIT")        ? UnitKind::length
          : entity.is("PLANE_ANGLE_UNIT") ? UnitKind::angle

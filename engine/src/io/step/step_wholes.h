@@ -1,5 +1,5 @@
 #pragma once
-// What holds what in a STEP file: products and representations as wholes, each listed once, and the uses between them.
+// The products and representations of a STEP file as wholes, each listed once, and the uses between them.
 
 #include <cstddef>
 #include <cstdint>
