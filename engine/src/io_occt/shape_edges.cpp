@@ -23,11 +23,6 @@ double length_or_zero(double value) { return std::isfinite(value) && value > 0 ?
 
 bool is_range(const Interval& range) { return range.from < range.to && std::isfinite(range.to - range.from); }
 
-Result<Curve> curve_of(const SplineLine& line) {
-  return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, line.range)
-                              : Curve::nurbs(line.degree, line.points, line.weights, line.knots, line.range);
-}
-
 }  // namespace
 
 ShapeEdges::ShapeEdges(const TopoDS_Shape& shape) {

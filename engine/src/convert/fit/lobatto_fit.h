@@ -35,7 +35,7 @@ class LobattoFit {
 
   /// Follows a curve along an interval, where the polynomials before it end.
   ///
-  /// - `at(t, near)`: the point at a parameter; `near`, a point, is close to it.
+  /// - `at(t)`: the point at a parameter.
   /// - `is_near(a, b)`: whether two points are near enough.
   /// - `breaks`: the ends of the interval and the parameters between them where the curve is less smooth, in order. An
   ///   interval is divided at the middle one, or else halved at most 10 times, until the polynomial is near. After
@@ -44,15 +44,11 @@ class LobattoFit {
   void follow(const At& at, const IsNear& is_near, std::span<const double> breaks) {
     const double from = breaks.front(), to = breaks.back();
     if (points_.empty()) {
-      points_.push_back(at(from, near_));
-      near_ = points_.back();
+      points_.push_back(at(from));
       knots_.assign(degree + 1, from);
     }
-    const Vec3 last = at(to, near_);
-    append(at, is_near, breaks, {points_.back(), last}, 0);
+    append(at, is_near, breaks, {points_.back(), at(to)}, 0);
   }
-  /// Sets what `near` is of the first point.
-  void begin_near(const Vec3& point) { near_ = point; }
 
   /// Returns the polynomials as a spline. Errors: non_finite (points).
   Result<Curve> curve() && {
@@ -75,8 +71,7 @@ class LobattoFit {
     const auto place = [&](double x) { return from + x * (to - from); };
     std::vector<Vec3> values(degree + 1), points(degree + 1);
     values.front() = ends.first, values.back() = ends.last;
-    Vec3 near = ends.first;
-    for (std::size_t k = 1; k < degree; ++k) values[k] = near = at(place(tables.nodes[k]), near);
+    for (std::size_t k = 1; k < degree; ++k) values[k] = at(place(tables.nodes[k]));
     for (std::size_t i = 0; i <= degree; ++i)
       for (std::size_t k = 0; k <= degree; ++k) points[i] += tables.bernstein[i * (degree + 1) + k] * values[k];
     points.front() = ends.first, points.back() = ends.last;
@@ -84,7 +79,7 @@ class LobattoFit {
     for (std::size_t c = 0; c < tables.checks.size() && fits; ++c) {
       Vec3 there;
       for (std::size_t i = 0; i <= degree; ++i) there += tables.at_checks[c * (degree + 1) + i] * points[i];
-      fits = is_near(there, at(place(tables.checks[c]), there));
+      fits = is_near(there, at(place(tables.checks[c])));
     }
     const bool has_break = breaks.size() > 2;
     if (fits || (!has_break && (depth == max_depth || points_.size() > max_points))) {
@@ -99,14 +94,13 @@ class LobattoFit {
     const std::span<const double> first = has_break ? breaks.first(middle + 1) : std::span(halves).first(2);
     const std::span<const double> second = has_break ? breaks.subspan(middle) : std::span(halves).last(2);
     const int deeper = has_break ? depth : depth + 1;
-    const Vec3 between = at(cut, values[degree / 2]);
+    const Vec3 between = at(cut);
     append(at, is_near, first, {ends.first, between}, deeper);
     append(at, is_near, second, {between, ends.last}, deeper);
   }
 
   std::vector<Vec3> points_;
   std::vector<double> knots_;
-  Vec3 near_;
   bool fits_ = true;
 };
 

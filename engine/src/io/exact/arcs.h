@@ -1,9 +1,12 @@
 #pragma once
 // The unit circle between two angles as rational quadratic arcs, and the relation of their parameter to the angle.
 
+#include <numbers>
 #include <vector>
 
 namespace tessera { inline namespace abi_0_1 {
+
+inline constexpr double full_turn = 2 * std::numbers::pi;  ///< radians
 
 /// Arcs of equal length, at most 90 degrees each, which meet in double knots; at the knots, their parameter is the
 /// angle. Within an arc about m of half-width h, it is m + h tan((angle - m)/2) / tan(h/2): the rational quadratic of

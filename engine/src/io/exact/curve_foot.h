@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/exact/spline_jets.h"
+#include "io/exact/spline_line.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 
@@ -16,14 +17,12 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// Parameters of samples of a curve: some in each knot interval of its domain, and both ends.
 inline std::vector<double> sample_parameters(const Curve& curve, int samples_per_interval) {
-  const Interval d = curve.domain();
-  std::vector<double> out{d.from};
-  for (const double knot : curve.knots()) {
-    const double end = std::min(knot, d.to), begin = out.back();
-    if (!(end > begin)) continue;
-    for (int k = 1; k <= samples_per_interval; ++k)
-      out.push_back(k == samples_per_interval ? end : begin + k * (end - begin) / samples_per_interval);
-  }
+  const std::vector<double> breaks = breaks_of(curve.knots(), curve.domain());
+  std::vector<double> out{breaks.front()};
+  for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+    for (int i = 1; i <= samples_per_interval; ++i)
+      out.push_back(i == samples_per_interval ? breaks[k + 1]
+                                              : breaks[k] + i * (breaks[k + 1] - breaks[k]) / samples_per_interval);
   return out;
 }
 

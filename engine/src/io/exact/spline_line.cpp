@@ -5,6 +5,20 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
+Result<Curve> curve_of(const SplineLine& line, const std::optional<Interval>& range) {
+  const Interval part = range ? covered(line.knots, line.degree, *range) : line.range;
+  return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, part)
+                              : Curve::nurbs(line.degree, line.points, line.weights, line.knots, part);
+}
+
+std::vector<double> breaks_of(std::span<const double> knots, const Interval& range) {
+  std::vector<double> out{range.from};
+  for (const double knot : knots)
+    if (knot > out.back() && knot < range.to) out.push_back(knot);
+  out.push_back(range.to);
+  return out;
+}
+
 SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range) {
   return {1, {range.from, range.from, range.to, range.to}, {start, end}, {}, range, {}, 0};
 }

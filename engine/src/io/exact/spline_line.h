@@ -8,6 +8,7 @@
 #include "io/exact/arcs.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
+#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -24,6 +25,9 @@ struct SplineLine {
   double weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
 };
 
+/// Returns the line as a curve over its range, or over another one, cut to what the knots cover. Errors: those of Curve.
+Result<Curve> curve_of(const SplineLine& line, const std::optional<Interval>& range = {});
+
 /// The straight line with these ends at the ends of the range.
 SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& range);
 /// The ellipse centre + cos(t) x + sin(t) y.
@@ -32,6 +36,9 @@ SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const 
 SplineLine parabola_arc(const Vec3& vertex, const Vec3& x, const Vec3& y, double focal, const Interval& range);
 /// The hyperbola centre + cosh(t) x + sinh(t) y, whose parameter is t at the ends of each arc, but not within.
 SplineLine hyperbola_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range);
+
+/// Returns the distinct knots within a range, and its ends.
+std::vector<double> breaks_of(std::span<const double> knots, const Interval& range);
 
 /// Returns the part of a range that the knots of a spline cover. An end that equals a knot up to the rounding of a
 /// period becomes that knot: otherwise a patch would lie between them.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/text.h"
@@ -11,8 +10,6 @@
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-constexpr double full_turn = 2 * std::numbers::pi;
 
 /// A range that is usable: finite, not empty.
 Status check_range(const StepEntity& entity, const Interval& range) {
@@ -51,9 +48,7 @@ std::uint64_t inner_step_curve(StepEntity& entity) {
 Result<StepCurve> StepCurves::curve(std::uint64_t number, const std::optional<Interval>& range) const {
   const Result<SplineLine> made = line(number, range, 0);
   if (!made) return made.status();
-  Result<Curve> curve = made->weights.empty()
-                            ? Curve::b_spline(made->degree, made->points, made->knots, made->range)
-                            : Curve::nurbs(made->degree, made->points, made->weights, made->knots, made->range);
+  Result<Curve> curve = curve_of(*made);
   if (!curve) return StepEntity(index_, number).named(curve.status());
   return StepCurve{*std::move(curve), made->arcs};
 }

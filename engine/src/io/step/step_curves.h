@@ -22,7 +22,7 @@ struct StepCurve {
 
 /// The curve of an edge.
 struct StepEdgeCurve {
-  StepCurve curve;
+  Curve curve;
   bool reversed = false;  ///< whether it runs from the edge's end to its start
 };
 

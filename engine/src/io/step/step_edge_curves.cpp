@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/text.h"
@@ -13,14 +12,6 @@
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-constexpr double round_turn = 2 * std::numbers::pi;
-
-Result<Curve> curve_of(const SplineLine& line, const std::optional<Interval>& range = {}) {
-  const Interval part = range ? covered(line.knots, line.degree, *range) : line.range;
-  return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, part)
-                              : Curve::nurbs(line.degree, line.points, line.weights, line.knots, part);
-}
 
 /// The part of a closed spline from one parameter to another, at most a period later, across its ends.
 Result<Curve> across_ends(const Curve& closed, double from, double to) {
@@ -116,7 +107,7 @@ Result<StepEdgeCurve> StepCurves::open_edge(StepEntity& entity, const std::array
   if (!line) return line.status();
   Result<Curve> curve = curve_of(*line);
   if (!curve) return curve.status();
-  return StepEdgeCurve{{*std::move(curve), line->arcs}, *b < *a};
+  return StepEdgeCurve{*std::move(curve), *b < *a};
 }
 
 Result<StepEdgeCurve> StepCurves::round_edge(StepEntity& entity, std::array<Vec3, 2> ends, bool agrees,
@@ -127,14 +118,14 @@ Result<StepEdgeCurve> StepCurves::round_edge(StepEntity& entity, std::array<Vec3
   if (!b) return b.status();
   Interval range{*a, *b};
   const double rounding = 1e-12;
-  if (range.to <= range.from + rounding) range.to += round_turn;
-  if (length(ends[1] - ends[0]) <= 1e-3 * tolerance) range.to = range.from + round_turn;
-  range.to = std::min(range.to, range.from + round_turn);
+  if (range.to <= range.from + rounding) range.to += full_turn;
+  if (length(ends[1] - ends[0]) <= 1e-3 * tolerance) range.to = range.from + full_turn;
+  range.to = std::min(range.to, range.from + full_turn);
   const Result<SplineLine> line = conic(entity, range);
   if (!line) return line.status();
   Result<Curve> curve = curve_of(*line);
   if (!curve) return curve.status();
-  return StepEdgeCurve{{*std::move(curve), line->arcs}, !agrees};
+  return StepEdgeCurve{*std::move(curve), !agrees};
 }
 
 Result<StepEdgeCurve> StepCurves::spline_edge(StepEntity& entity, std::array<Vec3, 2> ends, bool agrees,
@@ -146,7 +137,7 @@ Result<StepEdgeCurve> StepCurves::spline_edge(StepEntity& entity, std::array<Vec
   if (!agrees) std::swap(ends[0], ends[1]);
   const auto made = [](Result<Curve> curve, bool reversed) -> Result<StepEdgeCurve> {
     if (!curve) return curve.status();
-    return StepEdgeCurve{{*std::move(curve), {}}, reversed};
+    return StepEdgeCurve{*std::move(curve), reversed};
   };
   SplineFeet feet(*whole, tolerance);
   const Interval d = whole->domain();

@@ -39,7 +39,7 @@ StepOwnEdge pole_edge(std::uint32_t vertex, const StepOwnEdge::Use& use) {
 
 /// A surface that is a face by itself.
 Result<StepFaceResult> whole_surface(const StepFace& face, BSplineSurface surface, double tolerance) {
-  StepFaceResult out{std::move(surface), {}, true, {}, 0};
+  StepFaceResult out{std::move(surface), {}, true, {}, 0, false};
   // Before it has an outline, which runs counter-clockwise on the turned surface.
   if (!face.agrees)
     if (Status status = turn_around(out.surface, out.loops); !status.ok()) return status;
@@ -64,11 +64,11 @@ Result<StepFaceResult> face_on(const SurfaceInverse& inverse, const StepFace& fa
   Result<FaceSurface> surface = inverse.surface(box->domain);
   if (!surface) return surface.status();
   if (loops.empty()) return whole_surface(face, std::move(surface->surface), context.tolerance);
-  StepFaceResult out{std::move(surface->surface), {}, false, {}, inverse.fit_error()};
+  StepFaceResult out{std::move(surface->surface), {}, false, {}, inverse.fit_error(), false};
   // Below the rounding of places, no curve would be near enough.
   const double rounding = 2e-14 * std::max(max_abs(extent.lower), max_abs(extent.upper));
   const double fit_tolerance = std::max(1e-3 * context.tolerance, rounding);
-  const TrimCurveMaker maker(inverse, surface->parameters, *box, fit_tolerance);
+  TrimCurveMaker maker(inverse, surface->parameters, *box, fit_tolerance);
   const bool has_outer = std::ranges::any_of(loops, [](const LoopTrace& loop) { return loop.is_outer; });
   for (const LoopTrace& loop : loops) {
     TrimLoop& made = out.loops.emplace_back();
@@ -80,6 +80,7 @@ Result<StepFaceResult> face_on(const SurfaceInverse& inverse, const StepFace& fa
       if (Status status = maker.append(piece, edge, made); !status.ok()) return status;
     }
   }
+  out.is_rough = maker.is_rough();
   out.whole = is_whole_box(out.loops, *box);
   if (!face.agrees)
     if (Status status = turn_around(out.surface, out.loops); !status.ok()) return status;

@@ -38,7 +38,8 @@ struct StepFaceResult {
   std::vector<TrimLoop> loops;
   bool whole = false;  ///< one loop runs along all sides of the domain, and trims nothing
   std::vector<StepOwnEdge> own_edges;
-  double fit_error = 0;  ///< how far the surface is from the file's, where it had to be fitted
+  double fit_error = 0;   ///< how far the surface is from the file's, where it had to be fitted
+  bool is_rough = false;  ///< a curve of a loop is farther from the surface's nearest points than it should be
 };
 
 /// Converts a face. Errors: those of the geometry; unsupported (no bounds, no extent, an edge without a curve).

@@ -3,24 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "io/exact/curve_foot.h"
 #include "io/step/step_offset.h"
 #include "io/step/step_replica.h"
 #include "io/step/step_sphere_axis.h"
+#include "io/step/step_spline_inverse.h"
 #include "io/step/step_transform.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr double turn_of_inverse = 2 * std::numbers::pi;
-
 /// The angle, moved by whole turns to be near another.
-double angle_near(double angle, double near) {
-  return angle + turn_of_inverse * std::round((near - angle) / turn_of_inverse);
-}
+double angle_near(double angle, double near) { return angle + full_turn * std::round((near - angle) / full_turn); }
 
 double distance_from_z(const Vec3& p) { return std::sqrt(p.x * p.x + p.y * p.y); }
 
@@ -35,10 +31,10 @@ class ElementaryInverse : public SurfaceInverse {
  public:
   explicit ElementaryInverse(const StepElementary& of) : of_(of) {
     whole_ = of.whole;
-    if (of.kind != StepElementaryKind::plane) period_.u = turn_of_inverse;
+    if (of.kind != StepElementaryKind::plane) period_.u = full_turn;
     if (of.kind == StepElementaryKind::torus && std::isfinite(of.whole.v1 - of.whole.v0) &&
-        of.whole.v1 - of.whole.v0 >= turn_of_inverse)
-      period_.v = turn_of_inverse;
+        of.whole.v1 - of.whole.v0 >= full_turn)
+      period_.v = full_turn;
     turns_u_ = period_.u > 0, turns_v_ = period_.v > 0;
   }
 
@@ -118,11 +114,6 @@ class ElementaryInverse : public SurfaceInverse {
   StepElementary of_;
 };
 
-Result<Curve> profile_curve(const SplineLine& line) {
-  return line.weights.empty() ? Curve::b_spline(line.degree, line.points, line.knots, line.range)
-                              : Curve::nurbs(line.degree, line.points, line.weights, line.knots, line.range);
-}
-
 /// The profile, cut to an interval within its range.
 SplineLine profile_part(const SplineLine& line, const Interval& range) {
   SplineLine out = line;
@@ -139,12 +130,12 @@ class SweptInverse : public SurfaceInverse {
     for (const double t : parameters_) points_.push_back(flat(t).point);
     const Interval d = curve_.domain();
     constexpr double far = std::numeric_limits<double>::infinity();
-    whole_ = sweep_.is_turned ? Domain{0, turn_of_inverse, d.from, d.to} : Domain{d.from, d.to, -far, far};
+    whole_ = sweep_.is_turned ? Domain{0, full_turn, d.from, d.to} : Domain{d.from, d.to, -far, far};
     const double length_of_period = d.to - d.from;
     const double size = length(points_.front()) + length(points_.back());
     const bool is_closed = length(position(curve_, d.from) - position(curve_, d.to)) <= 1e-9 * size;
     turns_u_ = sweep_.is_turned;
-    if (turns_u_) period_.u = turn_of_inverse;
+    if (turns_u_) period_.u = full_turn;
     if (is_closed) (sweep_.is_turned ? period_.v : period_.u) = length_of_period;
   }
 
@@ -236,9 +227,6 @@ class SweptInverse : public SurfaceInverse {
   std::vector<double> parameters_;
   std::vector<Vec3> points_;  ///< in the plane
   mutable double off_ = 0;    ///< as in SplineInverse; an inverse serves one thread
-
- public:
-  void set_tolerance(double tolerance) { tolerance_ = tolerance; }
 };
 
 }  // namespace
@@ -252,8 +240,6 @@ bool SurfaceInverse::is_pole_v(const ParameterPoint& place) const {
   const double width = period_.v > 0 ? period_.v : whole_.v1 - whole_.v0;
   return std::isfinite(width) && speeds(place).v * width <= tolerance_;
 }
-
-std::unique_ptr<SurfaceInverse> make_spline_inverse(BSplineSurface surface, double tolerance);
 
 std::unique_ptr<SurfaceInverse> SurfaceInverse::of_plane(const Frame& frame, double tolerance) {
   StepElementary plane;
@@ -334,7 +320,7 @@ Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make(const StepGeometry&
     Result<std::optional<StepSweep>> sweep = geometry.sweep(surface, extent);
     if (!sweep) return sweep.status();
     if (*sweep) {
-      Result<Curve> curve = profile_curve((*sweep)->profile);
+      Result<Curve> curve = curve_of((*sweep)->profile);
       if (!curve) return curve.status();
       out = std::make_unique<SweptInverse>(*std::move(*sweep), *std::move(curve));
     } else {

@@ -94,7 +94,7 @@ class ShapeMaker {
       const Vec3 end = shape_.vertices[edge.start].position;
       const Result<StepEdgeCurve> made = geometry_.edge_curve(edge.curve, {end, end}, edge.agrees, everything);
       constexpr double farthest = 1e150;  // as for points
-      for (const Vec3& p : made ? made->curve.curve.points() : std::span<const Vec3>())
+      for (const Vec3& p : made ? made->curve.points() : std::span<const Vec3>())
         if (max_abs(p) <= farthest) box.extend(p);
     }
   }
@@ -119,8 +119,8 @@ class ShapeMaker {
     }
     out.start = curve->reversed ? edge.end : edge.start;
     out.end = curve->reversed ? edge.start : edge.end;
-    out.range = curve->curve.curve.domain();
-    out.curve = std::move(curve->curve.curve);
+    out.range = curve->curve.domain();
+    out.curve = std::move(curve->curve);
     out.tolerance = tolerance_;
     out.same_parameter = true;
     return curve->reversed;
@@ -132,7 +132,7 @@ class ShapeMaker {
     const std::array<double, 4> knots{0, 0, 1, 1};
     Result<Curve> line = Curve::b_spline(1, ends, knots);
     if (!line) return line.status();
-    return StepEdgeCurve{{*std::move(line), {}}, false};
+    return StepEdgeCurve{*std::move(line), false};
   }
 
   Status make_faces() {
@@ -178,6 +178,8 @@ class ShapeMaker {
     }
     StepFaceResult& made = *results_[k];
     if (made.fit_error > 0) ++faults_.fitted, faults_.worst_fit = std::max(faults_.worst_fit, made.fit_error);
+    if (made.is_rough)
+      faults_.changed.push_back(words(k) + " has a border that curves follow only roughly: see the gaps of its edges");
     for (StepOwnEdge& own : made.own_edges) {
       for (const StepOwnEdge::Use& use : own.uses)
         made.loops[use.loop].coedges[use.curve].edge = static_cast<std::uint32_t>(shape_.edges.size());

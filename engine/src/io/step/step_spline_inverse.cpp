@@ -1,23 +1,13 @@
-// Parameters of points of spline surfaces.
+#include "io/step/step_spline_inverse.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "io/exact/spline_jets.h"
-#include "io/step/step_inverse.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-/// Distinct values of knots within an interval, both ends among them.
-std::vector<double> distinct_knots(std::span<const double> knots, double from, double to) {
-  std::vector<double> out{from};
-  for (const double knot : knots)
-    if (knot > out.back() && knot < to) out.push_back(knot);
-  out.push_back(to);
-  return out;
-}
 
 /// Parameters of samples, some in each knot interval, but not more than `most`.
 std::vector<double> grid_parameters_of(std::span<const double> breaks, std::size_t degree, std::size_t most) {
@@ -181,9 +171,9 @@ class SplineInverse : public SurfaceInverse {
   void sample() const {
     const Domain& d = whole_;
     constexpr std::size_t most = 24;
-    grid_u_ = grid_parameters_of(distinct_knots(surface_.knots_u(), d.u0, d.u1),
+    grid_u_ = grid_parameters_of(breaks_of(surface_.knots_u(), range_u(d)),
                                  static_cast<std::size_t>(surface_.degree_u()), most);
-    grid_v_ = grid_parameters_of(distinct_knots(surface_.knots_v(), d.v0, d.v1),
+    grid_v_ = grid_parameters_of(breaks_of(surface_.knots_v(), range_v(d)),
                                  static_cast<std::size_t>(surface_.degree_v()), most);
     for (const double u : grid_u_)
       for (const double v : grid_v_) samples_.push_back(at_(u, v).point);
@@ -199,7 +189,6 @@ class SplineInverse : public SurfaceInverse {
 
 }  // namespace
 
-std::unique_ptr<SurfaceInverse> make_spline_inverse(BSplineSurface surface, double tolerance);
 std::unique_ptr<SurfaceInverse> make_spline_inverse(BSplineSurface surface, double tolerance) {
   return std::make_unique<SplineInverse>(std::move(surface), tolerance);
 }

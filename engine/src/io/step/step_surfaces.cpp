@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "base/text.h"
@@ -12,8 +11,6 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
-
 Status check_box(const StepEntity& entity, const Domain& box) {
   const bool is_finite = std::isfinite(box.u1 - box.u0) && std::isfinite(box.v1 - box.v0);
   if (is_finite && box.u0 < box.u1 && box.v0 < box.v1) return {};
@@ -22,7 +19,7 @@ Status check_box(const StepEntity& entity, const Domain& box) {
 
 /// Angles must be moderate numbers, and span at most a full turn.
 Status check_angles(const StepEntity& entity, const Interval& angles) {
-  if (angles.to - angles.from <= turn * (1 + 1e-12) && std::abs(angles.from) <= max_angle) return {};
+  if (angles.to - angles.from <= full_turn * (1 + 1e-12) && std::abs(angles.from) <= max_angle) return {};
   return entity.error("an interval of angles must not be longer than a full turn", StatusCode::invalid_argument);
 }
 
@@ -41,11 +38,11 @@ bool is_elementary(const StepEntity& entity) {
 
 /// Returns all of a closed surface. Degenerate tori have the part on one side of where they meet themselves.
 Domain closed_box(StepEntity& entity, double major, double minor) {
-  if (entity.is("SPHERICAL_SURFACE")) return {0, turn, -turn / 4, turn / 4};
-  if (!entity.is("DEGENERATE_TOROIDAL_SURFACE") || major >= minor) return {0, turn, 0, turn};
+  if (entity.is("SPHERICAL_SURFACE")) return {0, full_turn, -full_turn / 4, full_turn / 4};
+  if (!entity.is("DEGENERATE_TOROIDAL_SURFACE") || major >= minor) return {0, full_turn, 0, full_turn};
   const double meeting = std::acos(-major / minor);
-  return entity.logical(entity.attribute(4)) ? Domain{0, turn, -meeting, meeting}
-                                             : Domain{0, turn, meeting, turn - meeting};
+  return entity.logical(entity.attribute(4)) ? Domain{0, full_turn, -meeting, meeting}
+                                             : Domain{0, full_turn, meeting, full_turn - meeting};
 }
 
 /// Knots and weights of a spline surface, whose points are read elsewhere.
@@ -145,7 +142,7 @@ Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   out.half_angle = is_cone ? units_.angle * entity.real(entity.attribute(3)) : 0;
   if (given_radius < 0 || (is_round && given_radius == 0))
     entity.fail("its radius is " + text(given_radius) + ", expected 0 or more");
-  if (is_cone && !(std::abs(out.half_angle) < turn / 4))
+  if (is_cone && !(std::abs(out.half_angle) < full_turn / 4))
     entity.fail("its half angle is " + text(out.half_angle) + " radians, expected less than a right angle");
   if (!entity.status().ok()) return entity.status();
   const Result<Frame> frame = placement(position);
@@ -154,7 +151,7 @@ Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   constexpr double far = std::numeric_limits<double>::infinity();
   out.whole = is_plane                                             ? Domain{-far, far, -far, far}
               : is_round || out.kind == StepElementaryKind::sphere ? closed_box(entity, out.radius, out.minor)
-                                                                   : Domain{0, turn, -far, far};
+                                                                   : Domain{0, full_turn, -far, far};
   if (!entity.status().ok()) return entity.status();
   return out;
 }
@@ -218,7 +215,7 @@ Result<FaceSurface> StepGeometry::swept(StepEntity& entity, const std::optional<
     if (!direction) return direction.status();
     return extruded(*profile, normalized(*direction), range_v(*box));
   }
-  const Interval angles = box ? range_u(*box) : Interval{0, turn};
+  const Interval angles = box ? range_u(*box) : Interval{0, full_turn};
   if (Status status = check_angles(entity, angles); !status.ok()) return status;
   const Result<Frame> frame = placement(by);
   if (!frame) return frame.status();
@@ -304,8 +301,8 @@ Result<FaceSurface> StepGeometry::trimmed_face(StepEntity& entity, const std::op
   Domain part{scale->u1 * trims[0], scale->u1 * trims[1], scale->v1 * trims[2], scale->v1 * trims[3]};
   const StepEntity of(index_, basis);
   const bool is_round = (is_elementary(of) && !of.is("PLANE")) || of.is("SURFACE_OF_REVOLUTION");
-  if (is_round && part.u1 <= part.u0) part.u1 += turn;  // past the place where angles begin again
-  if (is_torus(of) && part.v1 <= part.v0) part.v1 += turn;
+  if (is_round && part.u1 <= part.u0) part.u1 += full_turn;  // past the place where angles begin again
+  if (is_torus(of) && part.v1 <= part.v0) part.v1 += full_turn;
   if (Status status = check_box(entity, part); !status.ok()) return status;
   return face(basis, part, depth + 1);
 }

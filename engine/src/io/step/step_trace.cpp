@@ -13,10 +13,7 @@ namespace {
 /// Parameters at which an edge is sampled, from its start: several between two knots.
 std::vector<double> trace_parameters(const Curve& curve) {
   const Interval d = curve.domain();
-  std::vector<double> breaks{d.from};
-  for (const double knot : curve.knots())
-    if (knot > breaks.back() && knot < d.to) breaks.push_back(knot);
-  breaks.push_back(d.to);
+  const std::vector<double> breaks = breaks_of(curve.knots(), d);
   const std::size_t spans = breaks.size() - 1;
   const bool is_straight = curve.degree() == 1 && !curve.is_rational();
   const std::size_t each = is_straight ? (spans > 4 ? 2 : 4) : spans > 16 ? 2 : 4;

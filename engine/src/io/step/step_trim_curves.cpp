@@ -180,7 +180,7 @@ Result<Curve> TrimCurveMaker::straight(const EdgeTrace& piece, const Curve& edge
 }
 
 Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, const double* constant_u,
-                                     const double* constant_v) const {
+                                     const double* constant_v) {
   const FastCurve at_edge(edge);
   const Interval d = edge.domain();
   const auto parameter = [&](double t) { return piece.reversed ? d.from + d.to - t : t; };
@@ -189,7 +189,7 @@ Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, 
     const ParameterPoint speeds = inverse_.speeds(sample.place);
     speed_u = std::max(speed_u, speeds.u), speed_v = std::max(speed_v, speeds.v);
   }
-  const auto at = [&](double t, const Vec3&) {
+  const auto at = [&](double t) {
     const double s = parameter(t);
     // At a pole, only the trace knows to which parameter the edge tends.
     const ParameterPoint* const known = sampled(piece, s, 1e-14 * (d.to - d.from));
@@ -215,6 +215,7 @@ Result<Curve> TrimCurveMaker::fitted(const EdgeTrace& piece, const Curve& edge, 
   apart.push_back(d.to);
   LobattoFit fit;
   fit.follow(at, is_near, apart);
+  is_rough_ = is_rough_ || !fit.is_exact_enough();
   return std::move(fit).curve();
 }
 
@@ -233,7 +234,7 @@ Result<Curve> TrimCurveMaker::kept_inside(const Curve& curve) const {
   return is_inside ? curve : mapped_curve(curve, false, map);
 }
 
-Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge) const {
+Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge) {
   if (edge == nullptr) {
     const ParameterPoint a = ours(piece.first()), b = ours(piece.last());
     return straight_curve({a.u, a.v, 0}, {b.u, b.v, 0}, {0, 1});
@@ -249,7 +250,7 @@ Result<Curve> TrimCurveMaker::curve_of(const EdgeTrace& piece, const BrepEdge* e
   return fitted(piece, curve, along_v ? &constant : nullptr, along_v ? nullptr : &constant);
 }
 
-Status TrimCurveMaker::append(const EdgeTrace& piece, const BrepEdge* edge, TrimLoop& loop) const {
+Status TrimCurveMaker::append(const EdgeTrace& piece, const BrepEdge* edge, TrimLoop& loop) {
   Coedge coedge{piece.edge, piece.reversed, {}};
   const Result<Curve> whole = curve_of(piece, edge, coedge);
   if (!whole) return whole.status();

@@ -27,10 +27,12 @@ class TrimCurveMaker {
 
   /// Appends the curve of a piece, and its coedge, to a loop. `edge`: the piece's; not used along poles. Errors: those
   /// of Curve.
-  Status append(const EdgeTrace& piece, const BrepEdge* edge, TrimLoop& loop) const;
+  Status append(const EdgeTrace& piece, const BrepEdge* edge, TrimLoop& loop);
+  /// Whether a curve reached the limit of its points before it was near enough.
+  bool is_rough() const { return is_rough_; }
 
  private:
-  Result<Curve> curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge) const;
+  Result<Curve> curve_of(const EdgeTrace& piece, const BrepEdge* edge, Coedge& coedge);
   ParameterPoint ours(const ParameterPoint& theirs) const;
   double our(bool along_u, double theirs) const;
   const ParameterPoint* sampled(const EdgeTrace& piece, double s, double rounding) const;
@@ -40,8 +42,7 @@ class TrimCurveMaker {
   Result<Curve> on_plane(const EdgeTrace& piece, const Curve& edge, const Frame& frame) const;
   Result<Curve> straight(const EdgeTrace& piece, const Curve& edge, bool along_u, double constant,
                          Coedge& coedge) const;
-  Result<Curve> fitted(const EdgeTrace& piece, const Curve& edge, const double* constant_u,
-                       const double* constant_v) const;
+  Result<Curve> fitted(const EdgeTrace& piece, const Curve& edge, const double* constant_u, const double* constant_v);
   Result<Curve> kept_inside(const Curve& curve) const;
   std::vector<double> crossings(const EdgeTrace& piece, const Curve& edge, bool along_u) const;
 
@@ -49,6 +50,7 @@ class TrimCurveMaker {
   const Reparametrization& parameters_;
   const FaceBox& box_;
   double tolerance_;
+  bool is_rough_ = false;
 };
 
 }}  // namespace tessera::abi_0_1
