@@ -26,6 +26,7 @@
 
 #include "io_occt/cad_shapes.h"
 #include "io_occt/shape_model.h"
+#include "peers/file_arguments.h"
 #include "peers/interleaved.h"
 #include "peers/joined_shape.h"
 #include "peers/occt_shape.h"
@@ -137,18 +138,8 @@ int run(std::vector<std::filesystem::path> files) {
 }}  // namespace tessera::bench
 
 int main(int argc, char** argv) {
-  std::vector<std::filesystem::path> files;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view argument = argv[k];
-    if (argument == "--help" || argument == "-h") return std::fputs(tessera::bench::usage, stdout) < 0;
-    if (argument.starts_with('-')) {
-      std::fprintf(stderr, "unknown option '%s'\n%s", argv[k], tessera::bench::usage);
-      return 2;
-    }
-    files.emplace_back(argument);
-  }
   try {
-    return tessera::bench::run(std::move(files));
+    return tessera::bench::run(tessera::bench::file_arguments(argc, argv, tessera::bench::usage));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "occt_closed_mesh: %s\n", error.what());
   }

@@ -45,6 +45,7 @@
 #include "io/step/step_tree.h"
 #include "io_occt/cad_file.h"
 #include "peers/child_result.h"
+#include "support/real_files.h"
 #include "tessera/convert.h"
 #include "tessera/io.h"
 #include "tessera/topology.h"
@@ -313,16 +314,9 @@ Counts compare_file(const fs::path& file, int points) {
 }
 
 std::vector<fs::path> all_step_files() {
-  std::vector<fs::path> files;
   const char* const data = std::getenv("TESSERA_TEST_DATA");
   if (data == nullptr) throw std::runtime_error("name files, or set TESSERA_TEST_DATA");
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data)) {
-    const std::string ending = entry.path().extension().string();
-    const bool is_step = ending == ".step" || ending == ".stp" || ending == ".STEP" || ending == ".STP";
-    if (entry.is_regular_file() && is_step) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
+  return test::step_files_below(data);
 }
 
 void print(const char* name, const Counts& c) {

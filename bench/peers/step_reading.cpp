@@ -24,11 +24,13 @@
 #include <vector>
 
 #include "peers/child_result.h"
+#include "peers/file_arguments.h"
 #include "peers/interleaved.h"
 #include "peers/joined_shape.h"
 #include "peers/joined_step.h"
 #include "peers/results.h"
 #include "peers/step_opencascade.h"
+#include "support/real_files.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
 #include "tessera/cad.h"
@@ -225,25 +227,10 @@ void report_large(const std::vector<fs::path>& files) {
   }
 }
 
-bool is_step(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".step" || ending == ".stp";
-}
-
-std::vector<fs::path> all_step_files() {
-  std::vector<fs::path> files;
-  const char* const data = std::getenv("TESSERA_TEST_DATA");
-  if (data == nullptr) return files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data))
-    if (entry.is_regular_file() && is_step(entry.path())) files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
 /// Returns whether no mesh of a closed shape is open.
 bool run(std::vector<fs::path> files) {
-  if (files.empty()) files = all_step_files();
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (files.empty() && data != nullptr) files = test::step_files_below(data);
   if (files.empty()) throw std::runtime_error("name files, or set TESSERA_TEST_DATA");
   std::printf("%-62s %6s | %-27s | %-27s | %s\n", "", "", "reading: ms, OpenCASCADE's", "to .glb: ms, OpenCASCADE's",
               "triangles, OpenCASCADE's");
@@ -281,18 +268,8 @@ bool run(std::vector<fs::path> files) {
 }}  // namespace tessera::bench
 
 int main(int argc, char** argv) {
-  std::vector<std::filesystem::path> files;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view argument = argv[k];
-    if (argument == "--help" || argument == "-h") return std::fputs(tessera::bench::usage, stdout) < 0;
-    if (argument.starts_with('-')) {
-      std::fprintf(stderr, "unknown option '%s'\n%s", argv[k], tessera::bench::usage);
-      return 2;
-    }
-    files.emplace_back(argument);
-  }
   try {
-    return tessera::bench::run(std::move(files)) ? 0 : 1;
+    return tessera::bench::run(tessera::bench::file_arguments(argc, argv, tessera::bench::usage)) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "step_reading: %s\n", error.what());
   }

@@ -14,6 +14,8 @@ struct StepDifference {
 
 constexpr std::string_view own_seam =
     "OpenCASCADE cuts a closed edge in two where it adds a seam; Tessera has the file's edges";
+constexpr std::string_view rough =
+    "Tessera says that a curve of a border reached its limit of points; its gaps are no larger than OpenCASCADE's";
 constexpr std::string_view own_pieces =
     "the file states one solid of one closed shell; OpenCASCADE makes a solid of each of its pieces. The volumes are "
     "equal together";
@@ -23,6 +25,8 @@ constexpr std::string_view axis =
 constexpr std::string_view seam_and_axis = "a seam that OpenCASCADE adds, and an axis placement by which it moves";
 
 constexpr StepDifference step_differences[] = {
+    {"30274_ca0d10b2_1.stp", "warnings", rough},
+    {"wing_fuselage.step", "warnings", rough},
     {"issues_16__54360_db08c779_0036_2.step", "area",
      "an arc of face 41 ends 9e-8 beside the corner. Of the half disc, 9.81747704, Tessera's area lacks 2.6e-7 and "
      "OpenCASCADE's has 6.8e-7 too much"},

@@ -12,24 +12,12 @@
 
 #include "io_occt/step_comparison.h"
 #include "io_occt/step_differences.h"
+#include "support/real_files.h"
 #include "tessera/cad.h"
 
 namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<fs::path> step_readers_files() {
-  std::vector<fs::path> files;
-  const char* const data = std::getenv("TESSERA_TEST_DATA");
-  if (data == nullptr) return files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data)) {
-    const std::string ending = entry.path().extension().string();
-    const bool is_step = ending == ".step" || ending == ".stp" || ending == ".STEP" || ending == ".STP";
-    if (entry.is_regular_file() && is_step) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
 
 const StepDifference* known_difference(const fs::path& file) {
   const auto is_it = [&](const StepDifference& one) { return file.native().ends_with(one.file); };
@@ -38,8 +26,9 @@ const StepDifference* known_difference(const fs::path& file) {
 }
 
 TEST(StepReaders, AreTheSameOrDifferAsKnown) {
-  const std::vector<fs::path> files = step_readers_files();
-  if (files.empty()) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  const char* const data = std::getenv("TESSERA_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
+  const std::vector<fs::path> files = step_files_below(data);
   std::size_t equal = 0, unread = 0, listed = 0;
   for (const fs::path& file : files) {
     const Result<Model> ours = read_cad(file, {.step_reader = StepReader::tessera});

@@ -12,6 +12,7 @@
 
 #include "io/step/step_index.h"
 #include "io/step/step_record.h"
+#include "support/real_files.h"
 #include "support/synthetic_sets.h"
 
 namespace tessera::test { namespace {
@@ -41,22 +42,14 @@ std::multiset<std::uint64_t> numbers_in(const std::string& text) {
   return out;
 }
 
-bool is_step(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".stp" || extension == ".step" || extension == ".p21";
-}
-
 TEST(StepFiles, HoldTheInstancesThatASearchFinds) {
   const char* const folder = std::getenv("TESSERA_TEST_DATA");
   if (folder == nullptr) GTEST_SKIP() << "TESSERA_TEST_DATA names no folder of real files";
   std::size_t files = 0, instances = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file() || !is_step(entry.path()) ||
-        entry.path().string().find("fault_cases") != std::string::npos)
-      continue;
-    SCOPED_TRACE(entry.path().string());
-    std::ifstream file(entry.path(), std::ios::binary);
+  for (const fs::path& path : step_files_below(folder)) {
+    if (path.string().find("fault_cases") != std::string::npos) continue;
+    SCOPED_TRACE(path.string());
+    std::ifstream file(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     const Result<StepIndex> index = StepIndex::make(text);
     ASSERT_TRUE(index) << index.status().message();

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "io/step/step_geometry.h"
+#include "support/real_files.h"
 #include "support/synthetic_sets.h"
 
 namespace tessera::test { namespace {
@@ -49,12 +50,6 @@ constexpr std::array surface_kinds{"PLANE",
 struct Count {
   std::size_t converted = 0, failed = 0, flat = 0;
 };
-
-bool is_step_file(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".stp" || extension == ".step";
-}
 
 /// Returns the first of the kinds that the entity has; rational ones have several.
 template <std::size_t n>
@@ -94,11 +89,9 @@ TEST(StepGeometryFiles, CurvesAndSurfacesConvert) {
   std::map<std::string, Count> counts;
   std::map<std::string, std::size_t> errors;
   Count all;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file() || !is_step_file(entry.path()) ||
-        entry.path().string().find("fault_cases") != std::string::npos)
-      continue;
-    std::ifstream file(entry.path(), std::ios::binary);
+  for (const fs::path& path : step_files_below(folder)) {
+    if (path.string().find("fault_cases") != std::string::npos) continue;
+    std::ifstream file(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     const Result<StepIndex> index = StepIndex::make(text);
     ASSERT_TRUE(index) << index.status().message();
@@ -114,7 +107,7 @@ TEST(StepGeometryFiles, CurvesAndSurfacesConvert) {
       for (Count* const count : {&counts[curve + surface], &all})
         ++(status.ok() ? count->converted : count->failed), count->flat += is_flat;
       if (!status.ok() && ++errors[curve + surface] <= 3)
-        std::cout << entry.path().filename().string() << ": " << status.message() << '\n';
+        std::cout << path.filename().string() << ": " << status.message() << '\n';
     }
   }
   for (const auto& [kind, count] : counts)

@@ -12,6 +12,7 @@
 
 #include "io_step/step_builder.h"
 #include "io_step/step_mutator.h"
+#include "support/real_files.h"
 #include "support/scratch_folder.h"
 
 namespace tessera::test { namespace {
@@ -41,11 +42,8 @@ std::vector<std::string> seeds() {
   const char* const folder = std::getenv("TESSERA_TEST_DATA");
   if (folder == nullptr) return out;
   std::vector<std::pair<std::uintmax_t, std::filesystem::path>> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
-    if (entry.is_regular_file() && (extension == ".stp" || extension == ".step" || extension == ".STEP"))
-      files.emplace_back(entry.file_size(), entry.path());
-  }
+  for (const std::filesystem::path& path : step_files_below(folder))
+    files.emplace_back(std::filesystem::file_size(path), path);
   std::sort(files.begin(), files.end());
   constexpr std::size_t most = 120;
   for (std::size_t k = 0; k < std::min(most, files.size()); ++k) out.push_back(content_of(files[k].second));

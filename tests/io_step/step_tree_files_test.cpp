@@ -12,17 +12,12 @@
 #include <string>
 
 #include "io/step/step_tree.h"
+#include "support/real_files.h"
 #include "support/synthetic_sets.h"
 
 namespace tessera::test { namespace {
 
 namespace fs = std::filesystem;
-
-bool has_step_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".stp" || extension == ".step";
-}
 
 struct Facts {
   std::size_t parts, places;
@@ -41,14 +36,13 @@ TEST(StepTree, ReadsAllRealFiles) {
   const char* const folder = std::getenv("TESSERA_TEST_DATA");
   if (folder == nullptr) GTEST_SKIP() << "TESSERA_TEST_DATA is not set";
   std::size_t files = 0, with_places = 0, places = 0, remarks = 0, found = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_regular_file() || !has_step_extension(entry.path())) continue;
-    std::ifstream in(entry.path(), std::ios::binary);
+  for (const fs::path& path : step_files_below(folder)) {
+    std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     const Result<StepIndex> index = StepIndex::make(text);
     if (!index) continue;
     const Result<StepTree> tree = read_step_tree(*index, encoding_of(text));
-    ASSERT_TRUE(tree.ok()) << entry.path() << tree.status().message();
+    ASSERT_TRUE(tree.ok()) << path << tree.status().message();
     ++files, with_places += !tree->places.empty(), places += tree->places.size(), remarks += tree->remarks.count;
     for (const StepPlacedPart& place : tree->places) {
       ASSERT_LT(place.part, tree->parts.size());
@@ -56,12 +50,12 @@ TEST(StepTree, ReadsAllRealFiles) {
       EXPECT_TRUE(is_finite(place.placement));
       EXPECT_FALSE(tree->parts[place.part].items.empty());
     }
-    const auto facts = known.find(entry.path().filename().string());
+    const auto facts = known.find(path.filename().string());
     if (facts == known.end()) continue;
     ++found;
-    EXPECT_EQ(tree->parts.size(), facts->second.parts) << entry.path();
-    EXPECT_EQ(tree->places.size(), facts->second.places) << entry.path();
-    EXPECT_EQ(tree->file_unit, facts->second.unit) << entry.path();
+    EXPECT_EQ(tree->parts.size(), facts->second.parts) << path;
+    EXPECT_EQ(tree->places.size(), facts->second.places) << path;
+    EXPECT_EQ(tree->file_unit, facts->second.unit) << path;
   }
   std::cout << files << " files, " << with_places << " with " << places << " places; " << remarks << " remarks\n";
   EXPECT_GT(files, 0u);
