@@ -25,7 +25,8 @@ struct SplineLine {
   double weight(std::size_t k) const { return weights.empty() ? 1 : weights[k]; }
 };
 
-/// Returns the line as a curve over its range, or over another one, cut to what the knots cover. Errors: those of Curve.
+/// Returns the line as a curve over its range, or over another one, cut to what the knots cover. Errors: those of
+/// Curve.
 Result<Curve> curve_of(const SplineLine& line, const std::optional<Interval>& range = {});
 
 /// The straight line with these ends at the ends of the range.
