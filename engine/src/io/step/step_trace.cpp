@@ -97,11 +97,11 @@ EdgeTrace EdgeTracer::trace(std::uint32_t edge, bool reversed, const std::option
   return out;
 }
 
-/// Appends a line along the pole at which two pieces meet, if they leave it at different parameters. The loop keeps the
+/// Returns the line along the pole at which two pieces meet, if they leave it at different parameters. The loop keeps the
 /// face on its left, so that the line runs towards smaller u where the pole is at the top.
-void EdgeTracer::connect(const EdgeTrace& before, const EdgeTrace& after, bool is_closing,
-                         std::vector<EdgeTrace>& out) const {
-  if (!before.ends_at_pole || !after.starts_at_pole) return;
+std::optional<EdgeTrace> EdgeTracer::along_pole(const EdgeTrace& before, const EdgeTrace& after,
+                                                bool is_closing) const {
+  if (!before.ends_at_pole || !after.starts_at_pole) return {};
   const ParameterPoint a = before.last();
   const bool along_u = inverse_.is_pole_u(a);
   const auto along = [&](const ParameterPoint& p) { return along_u ? p.u : p.v; };
@@ -119,11 +119,11 @@ void EdgeTracer::connect(const EdgeTrace& before, const EdgeTrace& after, bool i
     if (falls && way > tiny) way -= period;
     if (!falls && way < -tiny) way += period;
   }
-  if (way == 0 || (is_closing && period == 0 && std::abs(way) < 1e-12)) return;
+  if (way == 0 || (is_closing && period == 0 && std::abs(way) < 1e-12)) return {};
   ParameterPoint b = a;
   (along_u ? b.u : b.v) += way;
   const BrepEdge& edge = edges_[before.edge];
-  out.push_back({no_id, before.reversed ? edge.start : edge.end, false, {{0, a}, {1, b}}, true, true});
+  return EdgeTrace{no_id, before.reversed ? edge.start : edge.end, false, {{0, a}, {1, b}}, true, true};
 }
 
 LoopTrace EdgeTracer::loop(const StepBound& bound, const std::vector<bool>& reversed_curves) const {
@@ -140,8 +140,7 @@ LoopTrace EdgeTracer::loop(const StepBound& bound, const std::vector<bool>& reve
     const StepEdgeUse& use = bound.uses[(first + k) % bound.uses.size()];
     EdgeTrace next = trace(use.edge, use.reversed != reversed_curves[use.edge], near);
     if (!out.pieces.empty()) {
-      const EdgeTrace before = out.pieces.back();
-      connect(before, next, false, out.pieces);
+      if (std::optional<EdgeTrace> line = along_pole(out.pieces.back(), next, false)) out.pieces.push_back(*line);
       // The next piece goes on where the line along the pole ends.
       const ParameterPoint end = out.pieces.back().last(), period = inverse_.period();
       const double du = period.u > 0 ? period.u * std::round((end.u - next.first().u) / period.u) : 0;
@@ -152,8 +151,8 @@ LoopTrace EdgeTracer::loop(const StepBound& bound, const std::vector<bool>& reve
     out.pieces.push_back(std::move(next));
   }
   if (out.pieces.empty()) return out;
-  const EdgeTrace last = out.pieces.back();
-  connect(last, out.pieces.front(), true, out.pieces);
+  if (std::optional<EdgeTrace> line = along_pole(out.pieces.back(), out.pieces.front(), true))
+    out.pieces.push_back(*line);
   const ParameterPoint a = out.pieces.front().first(), b = out.pieces.back().last(), period = inverse_.period();
   if (period.u > 0) out.winding.u = std::round((b.u - a.u) / period.u);
   if (period.v > 0) out.winding.v = std::round((b.v - a.v) / period.v);

@@ -58,7 +58,7 @@ class EdgeTracer {
   EdgeTrace trace(std::uint32_t edge, bool reversed, const std::optional<ParameterPoint>& near) const;
   void follow(const FastCurve& curve, double to, std::vector<TraceSample>& samples, int depth) const;
   void settle_pole(const FastCurve& curve, EdgeTrace& trace, bool at_end) const;
-  void connect(const EdgeTrace& before, const EdgeTrace& after, bool is_closing, std::vector<EdgeTrace>& out) const;
+  std::optional<EdgeTrace> along_pole(const EdgeTrace& before, const EdgeTrace& after, bool is_closing) const;
   bool is_pole(const ParameterPoint& place) const { return inverse_.is_pole_u(place) || inverse_.is_pole_v(place); }
 
   const SurfaceInverse& inverse_;
