@@ -23,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t buffer_bytes = std::size_t{1} << 16;  // small, since it is cleared for every file
-
 /// The name of a temporary, where a signal handler can read it: in memory that is never freed, without a lock.
 struct NamePlace {
   std::atomic<bool> taken = false, readable = false;
@@ -191,7 +189,7 @@ class OutputFile::Destination {
 };
 
 OutputFile::OutputFile(std::unique_ptr<Destination> destination, fs::path target, const std::atomic<bool>* cancel)
-    : destination_(std::move(destination)), target_(std::move(target)), cancel_(cancel), buffer_(buffer_bytes) {}
+    : destination_(std::move(destination)), target_(std::move(target)), cancel_(cancel) {}
 OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
@@ -243,17 +241,17 @@ void OutputFile::fail(int error_number) {
 }
 
 void OutputFile::write(std::string_view bytes) {
-  if (bytes.size() > buffer_.size() - used_) {
+  if (bytes.size() > buffer_bytes - used_) {
     flush();
-    if (bytes.size() >= buffer_.size() / 2) return send(bytes);
+    if (bytes.size() >= buffer_bytes / 2) return send(bytes);
   }
   if (bytes.empty()) return;
-  std::memcpy(buffer_.data() + used_, bytes.data(), bytes.size());
+  std::memcpy(buffer_.get() + used_, bytes.data(), bytes.size());
   used_ += bytes.size();
 }
 
 void OutputFile::flush() {
-  send({buffer_.data(), used_});
+  send({buffer_.get(), used_});
   used_ = 0;
 }
 

@@ -39,7 +39,7 @@ class OutputFile {
 
   TESSERA_INTERNAL_EXPORT void write(std::string_view bytes);  ///< writes the bytes as they are
   void write(char c) {                                         ///< writes one byte
-    if (buffer_.size() - used_ < 1) flush();
+    if (buffer_bytes - used_ < 1) flush();
     buffer_[used_++] = c;
   }
   /// Writes integers, and floats in the shortest form that reads back as the same number.
@@ -70,8 +70,8 @@ class OutputFile {
   OutputFile(std::unique_ptr<Destination> destination, std::filesystem::path target, const std::atomic<bool>* cancel);
   static Result<OutputFile> open(const std::filesystem::path& path, const std::atomic<bool>* cancel);
   char* room(std::size_t bytes) {
-    if (buffer_.size() - used_ < bytes) flush();
-    return buffer_.data() + used_;
+    if (buffer_bytes - used_ < bytes) flush();
+    return buffer_.get() + used_;
   }
   void flush();
   void send(std::string_view bytes);
@@ -81,7 +81,8 @@ class OutputFile {
   std::unique_ptr<Destination> destination_;
   std::filesystem::path target_;
   const std::atomic<bool>* cancel_;
-  std::vector<char> buffer_;
+  static constexpr std::size_t buffer_bytes = std::size_t{1} << 16;  ///< small, for the many files of a batch
+  std::unique_ptr<char[]> buffer_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);
   std::size_t used_ = 0;
   Status status_;
 };
