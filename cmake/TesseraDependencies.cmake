@@ -8,11 +8,11 @@
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
 #                                               the command line: --json; tests: values of peers
 #   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
-#   tinygltf          libtinygltf-dev 2.7         tessera::io: glTF (engine/src/io alone); tests: its reader
 #   zlib              zlib1g-dev 1.2              tessera::io: files packed by gzip (engine/src/io alone); optional
 #   libpng            libpng-dev 1.6              the command line and the benchmarks: pictures
 #   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers); bench: two reports
+#   tinygltf          libtinygltf-dev 2.7         tests: a reader of glTF
 #   assimp            libassimp-dev 5.2           tests: another reader of glTF; skipped without
 #   Google Benchmark  libbenchmark-dev 1.7        benchmarks
 #   valgrind          valgrind 3.19               tests: instructions counted (tools/perf count), skipped without
@@ -53,7 +53,6 @@ endif()
 if(TESSERA_BUILD_IO)
   find_package(nlohmann_json 3 REQUIRED)
   find_package(muparser 2 REQUIRED)
-  find_package(TinyGLTF CONFIG REQUIRED)
 endif()
 # Whether tessera::io unpacks files of gzip, and what it links for that.
 set(TESSERA_HAS_ZLIB OFF)
@@ -109,6 +108,9 @@ if(TESSERA_BUILD_TESTS OR TESSERA_BUILD_BENCH)
 endif()
 if(TESSERA_BUILD_TESTS)
   find_package(nlohmann_json 3 REQUIRED)
+  if(TESSERA_BUILD_IO)
+    find_package(TinyGLTF CONFIG REQUIRED)
+  endif()
 endif()
 if(TESSERA_BUILD_BENCH)
   find_package(benchmark REQUIRED)

@@ -61,7 +61,7 @@ if(TESSERA_BUILD_IO)
     set(zlib_package zlib)
   endif()
   tessera_install_pkg_config(tessera-io tessera_io_library "Tessera's readers of surfaces and writers of meshes" ON tessera
-    REQUIRES muparser tinygltf ${zlib_package})
+    REQUIRES muparser ${zlib_package})
 else()
   list(APPEND left_out PATTERN "io.h" EXCLUDE PATTERN "cad.h" EXCLUDE PATTERN "surface_file.h" EXCLUDE)
 endif()

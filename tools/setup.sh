@@ -30,13 +30,13 @@ fail() {
 
 # cmake/TesseraDependencies.cmake says what each package is for.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
-  libtinygltf-dev zlib1g-dev libpng-dev libopenexr-dev)
+  zlib1g-dev libpng-dev libopenexr-dev)
 cad_packages=(libocct-data-exchange-dev)
 mpi_packages=(libopenmpi-dev openmpi-bin)
 python_packages=("${cad_packages[@]}" patchelf python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)
 package_packages=("${python_packages[@]}" dpkg-dev file)
-test_packages=("${python_packages[@]}" "${mpi_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev mypy python3
-  python3-pytest python3-yaml universal-ctags valgrind)
+test_packages=("${python_packages[@]}" "${mpi_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev libtinygltf-dev mypy
+  python3 python3-pytest python3-yaml universal-ctags valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)

@@ -18,7 +18,7 @@ std::atomic<std::size_t> count{0}, bytes_in_all{0}, held{0}, peak{0};
 std::atomic<long> left{-1};
 std::atomic<bool> failed{false};
 
-/// The code of Embree, oneTBB or tinygltf.
+/// The code of Embree or oneTBB.
 struct Range {
   std::uintptr_t begin, end;
 };
@@ -27,7 +27,7 @@ std::size_t foreign_count = 0;
 
 int note_foreign(dl_phdr_info* info, std::size_t, void*) {
   const auto is = [&](const char* library) { return std::strstr(info->dlpi_name, library) != nullptr; };
-  if (!is("libembree") && !is("libtbb") && !is("libtinygltf")) return 0;
+  if (!is("libembree") && !is("libtbb")) return 0;
   for (int k = 0; k < info->dlpi_phnum; ++k) {
     const auto& part = info->dlpi_phdr[k];
     if (part.p_type != PT_LOAD || !(part.p_flags & PF_X) || foreign_count == foreign.size()) continue;

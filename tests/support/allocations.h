@@ -17,7 +17,7 @@ std::size_t peak_bytes();
 std::size_t restart_peak();
 
 /// Makes the n-th call of operator new from now on, counted from 0 over all threads, throw std::bad_alloc, and only
-/// that one. Calls by Embree, oneTBB and tinygltf do not count: their error handling is their own.
+/// that one. Calls by Embree and oneTBB do not count: their error handling is their own.
 void fail_allocation(std::size_t n);
 /// Ends that. Returns whether a call has failed.
 bool stop_failing();

@@ -1,15 +1,11 @@
-// glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021) by tinygltf. All numbers lie in one buffer: positions, normals
-// and parameters of all vertices of a mesh, then its indices.
-
-#include <tiny_gltf.h>
+// glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021) All numbers lie in one buffer: positions, normals and
+// parameters of all vertices of a mesh, then its indices.
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <ostream>
 #include <span>
-#include <streambuf>
 #include <string>
 
 #include "io/file/text_cursor.h"
@@ -20,26 +16,8 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr std::size_t max_bytes = std::numeric_limits<std::int32_t>::max();  // tinygltf keeps offsets in int
-
-/// Passes tinygltf's output to the file, which remembers failures.
-class FileBuffer : public std::streambuf {
- public:
-  explicit FileBuffer(OutputFile& out) : out_(out) {}
-
- protected:
-  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
-    out_.write({bytes, static_cast<std::size_t>(count)});
-    return count;
-  }
-  int_type overflow(int_type c) override {
-    if (!traits_type::eq_int_type(c, traits_type::eof())) out_.write(traits_type::to_char_type(c));
-    return traits_type::not_eof(c);
-  }
-
- private:
-  OutputFile& out_;
-};
+constexpr std::size_t max_bytes =
+    std::numeric_limits<std::int32_t>::max();  // readers keep offsets in int, as tinygltf does
 
 Status check_size(std::size_t bytes) {
   if (bytes <= max_bytes) return {};
@@ -49,24 +27,6 @@ Status check_size(std::size_t bytes) {
 
 Status no_triangles() { return {StatusCode::invalid_argument, "the mesh has no triangles, glTF needs at least one"}; }
 
-Status write(const tinygltf::Model& model, OutputFile& out, bool binary) {
-  FileBuffer buffer(out);
-  std::ostream stream(&buffer);
-  const bool pretty = !binary;
-  if (tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, pretty, binary)) return {};
-  return {StatusCode::internal, "tinygltf could not write the mesh"};
-}
-
-/// Places the vertices of a mesh, which are relative to an origin.
-void place(tinygltf::Node& node, const Affine& placement, const Vec3& origin) {
-  const std::array<Vec3, 3>& c = placement.columns;
-  const Vec3 t = placement.point(origin);
-  if (c != Affine().columns)
-    node.matrix = {c[0].x, c[0].y, c[0].z, 0, c[1].x, c[1].y, c[1].z, 0, c[2].x, c[2].y, c[2].z, 0, t.x, t.y, t.z, 1};
-  else if (!(t == Vec3{}))
-    node.translation = {t.x, t.y, t.z};
-}
-
 /// One node and one mesh for each part.
 Status write(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options, bool binary) {
   if (!mesh.quads.empty()) {
@@ -75,8 +35,7 @@ Status write(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options,
   }
   if (mesh.triangle_count() == 0) return no_triangles();
   if (Status status = check_size(GltfContent::byte_count(mesh)); !status.ok()) return status;
-  GltfContent content(GltfContent::byte_count(mesh));
-  place(content.root(), up_from(options.up), mesh.origin);
+  GltfContent content({.placement = up_from(options.up), .origin = mesh.origin});
   content.add_vertices(mesh);
   std::vector<MeshPart> parts = mesh.parts;
   if (parts.empty()) parts.push_back({{}, 0, mesh.triangle_count()});
@@ -84,46 +43,39 @@ Status write(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options,
     if (part.triangle_count == 0) continue;
     const std::span indices = std::span(mesh.indices).subspan(3 * part.first_triangle, 3 * part.triangle_count);
     const auto [least, most] = std::minmax_element(indices.begin(), indices.end());
-    tinygltf::Primitive primitive = content.add_primitive(indices, *least, *most - *least + 1);
+    GltfPrimitive primitive = content.add_primitive({indices}, *least, *most - *least + 1);
     primitive.material = content.material(part.colour);
-    content.add_node(part.name).mesh = content.add_mesh(part.name, {primitive});
+    content.add_node({.name = part.name, .mesh = content.add_mesh(part.name, {&primitive, 1})});
   }
-  return write(std::move(content).take(), out, binary);
+  content.write(out, binary);
+  return {};
 }
 
-/// The triangles of a shape's mesh that have one colour of their own, or none.
-struct ColouredTriangles {
-  int material;
-  tinygltf::Primitive primitive;
-};
-
 /// Adds the vertices and triangles of a shape, by colours in the order of their first parts.
-std::vector<ColouredTriangles> add_shape(GltfContent& content, const Mesh& mesh) {
-  std::vector<int> materials;
-  std::map<int, std::vector<std::uint32_t>> indices;
+std::vector<GltfPrimitive> add_shape(GltfContent& content, const Mesh& mesh) {
+  std::vector<std::pair<int, GltfContent::IndexRuns>> colours;  // by material
+  std::map<int, std::size_t> places;                            // in it
   const auto add = [&](int material, std::size_t first, std::size_t count) {
     if (count == 0) return;
-    std::vector<std::uint32_t>& of_material = indices[material];
-    if (of_material.empty()) materials.push_back(material);
-    const std::span triangles = std::span(mesh.indices).subspan(3 * first, 3 * count);
-    of_material.insert(of_material.end(), triangles.begin(), triangles.end());
+    const auto [place, is_new] = places.try_emplace(material, colours.size());
+    if (is_new) colours.push_back({material, {}});
+    colours[place->second].second.push_back(std::span(mesh.indices).subspan(3 * first, 3 * count));
   };
   for (const MeshPart& part : mesh.parts) add(content.material(part.colour), part.first_triangle, part.triangle_count);
   if (mesh.parts.empty()) add(content.material({}), 0, mesh.triangle_count());
-  std::vector<ColouredTriangles> added;
-  if (!materials.empty()) content.add_vertices(mesh);
-  for (const int material : materials)
-    added.push_back({material, content.add_primitive(indices[material], 0, mesh.vertex_count())});
+  std::vector<GltfPrimitive> added;
+  if (!colours.empty()) content.add_vertices(mesh);
+  for (auto& [material, indices] : colours) {
+    added.push_back(content.add_primitive(std::move(indices), 0, mesh.vertex_count()));
+    added.back().material = material;
+  }
   return added;
 }
 
 /// The primitives of an instance; its colour is for triangles without one.
-std::vector<tinygltf::Primitive> coloured(const std::vector<ColouredTriangles>& shape, int none, int colour) {
-  std::vector<tinygltf::Primitive> primitives;
-  for (const ColouredTriangles& triangles : shape) {
-    primitives.push_back(triangles.primitive);
-    primitives.back().material = triangles.material == none ? colour : triangles.material;
-  }
+std::vector<GltfPrimitive> coloured(std::vector<GltfPrimitive> primitives, int none, int colour) {
+  for (GltfPrimitive& primitive : primitives)
+    if (primitive.material == none) primitive.material = colour;
   return primitives;
 }
 
@@ -169,35 +121,42 @@ double metres(const std::string& unit) { return unit.empty() ? 1 : micrometres_i
 /// Adds all shapes that have instances with triangles, each once, and a node for each instance.
 class AssemblyContent {
  public:
-  AssemblyContent(const MeshAssembly& assembly, UpAxis up, std::size_t bytes) : assembly_(assembly), content_(bytes) {
-    content_.name(content_.root(), assembly.name);
-    const double scale = metres(assembly.unit);
-    place(content_.root(), up_from(up) * Affine::scaled({scale, scale, scale}), {});
+  AssemblyContent(const MeshAssembly& assembly, UpAxis up)
+      : assembly_(assembly),
+        content_({.name = assembly.name, .placement = up_from(up) * scaled(metres(assembly.unit))}) {
     for (const MeshInstance& instance : assembly.instances) add(instance);
   }
 
-  tinygltf::Model take() && { return std::move(content_).take(); }
+  void write(OutputFile& out, bool binary) const { content_.write(out, binary); }
 
  private:
+  static Affine scaled(double scale) { return Affine::scaled({scale, scale, scale}); }
+
   void add(const MeshInstance& instance) {
     const ShapeMesh& shape = assembly_.shapes[instance.shape];
-    tinygltf::Node& node = content_.add_node(instance.name.empty() ? shape.name : instance.name);
-    place(node, instance.placement, shape.mesh.origin);
+    content_.add_node({.name = instance.name.empty() ? shape.name : instance.name,
+                       .mesh = mesh_of(instance),
+                       .placement = instance.placement,
+                       .origin = shape.mesh.origin});
+  }
+
+  int mesh_of(const MeshInstance& instance) {
+    const ShapeMesh& shape = assembly_.shapes[instance.shape];
     const auto [triangles, is_new] = shapes_.try_emplace(instance.shape);
     if (is_new) triangles->second = add_shape(content_, shape.mesh);
-    if (triangles->second.empty()) return;
+    if (triangles->second.empty()) return -1;
     const int none = content_.material({});
     const bool counts = std::ranges::any_of(triangles->second, [&](const auto& of) { return of.material == none; });
     const int colour = counts ? content_.material(instance.colour) : none;
     const auto [mesh, is_first] = meshes_.try_emplace({instance.shape, colour});
     if (is_first) mesh->second = content_.add_mesh(shape.name, coloured(triangles->second, none, colour));
-    node.mesh = mesh->second;
+    return mesh->second;
   }
 
   const MeshAssembly& assembly_;
   GltfContent content_;
-  std::map<std::size_t, std::vector<ColouredTriangles>> shapes_;  ///< by index
-  std::map<std::pair<std::size_t, int>, int> meshes_;             ///< by shape and material of triangles without colour
+  std::map<std::size_t, std::vector<GltfPrimitive>> shapes_;  ///< by index
+  std::map<std::pair<std::size_t, int>, int> meshes_;         ///< by shape and material of triangles without colour
 };
 
 /// One mesh for each shape and colour of instances, all of which share the shape's vertices and indices.
@@ -216,7 +175,8 @@ Status write(const MeshAssembly& assembly, OutputFile& out, const MeshWriteOptio
     triangles += assembly.shapes[instance.shape].mesh.triangle_count();
   if (triangles == 0) return no_triangles();
   if (Status status = check_size(bytes); !status.ok()) return status;
-  return write(AssemblyContent(assembly, options.up, bytes).take(), out, binary);
+  AssemblyContent(assembly, options.up).write(out, binary);
+  return {};
 }
 
 }  // namespace

@@ -4,19 +4,45 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <type_traits>
+
+#include "io/file/base64.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is written in the machine's own byte order");
 
-/// JSON holds UTF-8 only: invalid bytes become U+FFFD.
-std::string utf8(const std::string& name) {
-  const std::string quoted = nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return nlohmann::json::parse(quoted).get<std::string>();
+/// Appends a text as it is, or a number in the shortest form that reads back as the same.
+template <class Part>
+void append_part(std::string& text, const Part& part) {
+  if constexpr (std::is_arithmetic_v<Part>) {
+    std::array<char, 32> digits;
+    text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), part).ptr);
+  } else {
+    text += part;
+  }
+}
+template <class... Parts>
+void append(std::string& text, const Parts&... parts) {
+  (append_part(text, parts), ...);
+}
+
+/// A list of numbers within brackets.
+template <class Numbers>
+std::string list(const Numbers& numbers) {
+  std::string text;
+  for (const auto number : numbers) append(text, text.empty() ? "[" : ",", number);
+  return text + "]";
+}
+
+/// A name in quotes. JSON holds UTF-8 only: invalid bytes become U+FFFD.
+std::string quoted(std::string_view name) {
+  return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Vec3 vector_at(const std::vector<float>& values, std::size_t k) {
@@ -62,143 +88,206 @@ double linear(float value) {
   return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
+/// `,"name":"bolt"`, or nothing.
+std::string name_member(std::string_view name) { return name.empty() ? "" : ",\"name\":" + quoted(name); }
+
+/// The members of a node, the first one without the comma before it. The vertices of its mesh are relative to its
+/// origin.
+std::string members(const GltfNode& node) {
+  std::string text;
+  const std::array<Vec3, 3>& c = node.placement.columns;
+  const Vec3 t = node.placement.point(node.origin);
+  if (c != Affine().columns)
+    append(text, ",\"matrix\":",
+           list(std::array{c[0].x, c[0].y, c[0].z, 0., c[1].x, c[1].y, c[1].z, 0., c[2].x, c[2].y, c[2].z, 0., t.x, t.y,
+                           t.z, 1.}));
+  else if (!(t == Vec3{}))
+    append(text, ",\"translation\":", list(std::array{t.x, t.y, t.z}));
+  if (node.mesh >= 0) append(text, ",\"mesh\":", node.mesh);
+  text += name_member(node.name);
+  return text.empty() ? text : text.substr(1);
+}
+
+/// The members `min` and `max` of positions, which the format requires: their bounding box.
+std::string box_members(const float* p, std::size_t count) {
+  std::array<double, 3> least{p[0], p[1], p[2]}, most = least;
+  for (std::size_t k = 0; k < count; ++k, p += 3)
+    for (std::size_t c = 0; c < 3; ++c) {
+      least[c] = std::min(least[c], double{p[c]});
+      most[c] = std::max(most[c], double{p[c]});
+    }
+  return ",\"max\":" + list(most) + ",\"min\":" + list(least);
+}
+
+template <class T>
+std::string_view bytes_of(std::span<const T> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+
+constexpr const char* separator = ",\n";  // objects have lines of their own, for those who read .gltf
+constexpr std::size_t base64_piece = std::size_t{1} << 14;
+constexpr int array_buffer = 34962, element_array_buffer = 34963;  // targets of views, section 5.11.5
+constexpr int unsigned_int = 5125, float_32 = 5126;                // types of components, section 5.1.3
+
 }  // namespace
 
-GltfContent::GltfContent(std::size_t bytes) {
-  model_.asset.generator = "Tessera";
-  model_.buffers.resize(1);
-  model_.buffers[0].data.reserve(bytes);
-  model_.nodes.resize(1);
-  model_.scenes.emplace_back().nodes = {0};
-  model_.defaultScene = 0;
-  material({});
+template <class... Parts>
+int GltfContent::Objects::add(const Parts&... parts) {
+  if (count > 0) text += separator;
+  append(text, "{", parts..., "}");
+  return count++;
 }
 
-void GltfContent::name(tinygltf::Node& node, const std::string& name) { node.name = utf8(name); }
+GltfContent::GltfContent(const GltfNode& root) : root_(root) { material({}); }
 
-tinygltf::Node& GltfContent::add_node(const std::string& node_name) {
-  model_.nodes[0].children.push_back(static_cast<int>(model_.nodes.size()));
-  tinygltf::Node& node = model_.nodes.emplace_back();
-  name(node, node_name);
-  return node;
-}
+void GltfContent::add_node(const GltfNode& node) { nodes_.add(members(node)); }
 
-int GltfContent::add_mesh(const std::string& name, std::vector<tinygltf::Primitive> primitives) {
-  tinygltf::Mesh& mesh = model_.meshes.emplace_back();
-  mesh.name = utf8(name);
-  mesh.primitives = std::move(primitives);
-  return static_cast<int>(model_.meshes.size()) - 1;
+int GltfContent::add_mesh(std::string_view name, std::span<const GltfPrimitive> primitives) {
+  std::string text;
+  for (const GltfPrimitive& primitive : primitives) {
+    append(text, text.empty() ? "" : ",", "{\"attributes\":{\"POSITION\":", primitive.positions);
+    if (primitive.normals >= 0) append(text, ",\"NORMAL\":", primitive.normals);
+    if (primitive.parameters >= 0) append(text, ",\"TEXCOORD_0\":", primitive.parameters);
+    append(text, "},\"indices\":", primitive.indices, ",\"material\":", primitive.material, "}");
+  }
+  return meshes_.add("\"primitives\":[", text, "]", name_member(name));
 }
 
 int GltfContent::material(const std::optional<Colour>& colour) {
   std::array<float, 4> key{-1, -1, -1, -1};
   if (colour) key = {colour->red, colour->green, colour->blue, colour->alpha};
-  const auto [known, is_new] = materials_.try_emplace(key, static_cast<int>(model_.materials.size()));
+  const auto [known, is_new] = colours_.try_emplace(key, materials_.count);
   if (!is_new) return known->second;
-  tinygltf::Material& material = model_.materials.emplace_back();
-  material.doubleSided = true;  // surfaces need not be closed
-  material.pbrMetallicRoughness.metallicFactor = 0;
-  material.pbrMetallicRoughness.roughnessFactor = 0.5;
-  material.pbrMetallicRoughness.baseColorFactor = {0.8, 0.8, 0.8, 1};
-  if (colour)
-    material.pbrMetallicRoughness.baseColorFactor = {linear(colour->red), linear(colour->green), linear(colour->blue),
-                                                     double{colour->alpha}};
-  if (colour && colour->alpha < 1) material.alphaMode = "BLEND";
-  return known->second;
+  std::array<double, 4> factor{0.8, 0.8, 0.8, 1};
+  if (colour) factor = {linear(colour->red), linear(colour->green), linear(colour->blue), colour->alpha};
+  // Both sides are seen, since surfaces need not be closed.
+  return materials_.add(factor[3] < 1 ? "\"alphaMode\":\"BLEND\"," : "",
+                        "\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":", list(factor),
+                        ",\"metallicFactor\":0,\"roughnessFactor\":0.5}");
 }
 
 void GltfContent::add_vertices(const Mesh& mesh) {
   mesh_ = &mesh;
   ranges_.clear();
-  views_ = {};
-  views_.positions = add_view(mesh.positions, 3);
-  if (!mesh.normals.empty()) views_.normals = add_view(are_unit(mesh.normals) ? mesh.normals : unit_normals(mesh), 3);
-  if (!mesh.parameters.empty()) views_.parameters = add_view(mesh.parameters, 2);
-  views_.indices = static_cast<int>(model_.bufferViews.size());
-  model_.bufferViews.push_back(view(TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, 4 * mesh.indices.size()));
+  const auto add_values = [&](const std::vector<float>& values, std::size_t components, const Mesh* normals_of) {
+    if (values.empty()) return -1;
+    numbers_.push_back({.normals_of = normals_of, .values = values});
+    return add_view(values.size(), components);
+  };
+  mesh_views_.positions = add_values(mesh.positions, 3, nullptr);
+  mesh_views_.normals = add_values(mesh.normals, 3, are_unit(mesh.normals) ? nullptr : &mesh);
+  mesh_views_.parameters = add_values(mesh.parameters, 2, nullptr);
+  index_view_ = add_view(mesh.indices.size(), 0);
+  index_bytes_ = 0;
 }
 
-tinygltf::Primitive GltfContent::add_primitive(std::span<const std::uint32_t> indices, std::size_t first,
-                                               std::size_t count) {
-  const Accessors vertices = accessors(first, count);
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.attributes["POSITION"] = vertices.positions;
-  if (vertices.normals >= 0) primitive.attributes["NORMAL"] = vertices.normals;
-  if (vertices.parameters >= 0) primitive.attributes["TEXCOORD_0"] = vertices.parameters;
-  std::vector<std::uint32_t> own(indices.begin(), indices.end());
-  for (std::uint32_t& index : own) index -= static_cast<std::uint32_t>(first);
-  const std::size_t offset = model_.buffers[0].data.size() - model_.bufferViews.back().byteOffset;
-  append(own.data(), 4 * own.size());
+GltfPrimitive GltfContent::add_primitive(IndexRuns indices, std::size_t first, std::size_t count) {
+  const Attributes& vertices = attributes(first, count);
+  GltfPrimitive primitive{vertices.positions, vertices.normals, vertices.parameters};
+  std::size_t index_count = 0;
+  for (const std::span<const std::uint32_t>& run : indices) index_count += run.size();
   primitive.indices =
-      add_accessor(views_.indices, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, offset, own.size());
+      accessors_.add("\"bufferView\":", index_view_, ",\"byteOffset\":", index_bytes_,
+                     ",\"componentType\":", unsigned_int, ",\"count\":", index_count, ",\"type\":\"SCALAR\"");
+  index_bytes_ += 4 * index_count;
+  numbers_.push_back({.indices = std::move(indices), .first_vertex = static_cast<std::uint32_t>(first)});
   return primitive;
 }
 
-/// A view of the next `bytes` of the buffer.
-tinygltf::BufferView GltfContent::view(int target, std::size_t bytes) const {
-  tinygltf::BufferView view;
-  view.buffer = 0;
-  view.byteOffset = model_.buffers[0].data.size();
-  view.byteLength = bytes;
-  view.target = target;
-  return view;
+/// Adds a view of the next numbers of the buffer: vectors of vertices, or indices, which have 0 components.
+int GltfContent::add_view(std::size_t count, std::size_t components) {
+  std::string stride;
+  if (components > 0) append(stride, ",\"byteStride\":", 4 * components);
+  const std::size_t begin = bytes_;
+  bytes_ += 4 * count;
+  return views_.add("\"buffer\":0,\"byteLength\":", 4 * count, ",\"byteOffset\":", begin, stride,
+                    ",\"target\":", components > 0 ? array_buffer : element_array_buffer);
 }
 
-int GltfContent::add_view(const std::vector<float>& values, std::size_t components) {
-  tinygltf::BufferView added = view(TINYGLTF_TARGET_ARRAY_BUFFER, 4 * values.size());
-  added.byteStride = 4 * components;
-  model_.bufferViews.push_back(added);
-  append(values.data(), 4 * values.size());
-  return static_cast<int>(model_.bufferViews.size()) - 1;
-}
-
-void GltfContent::append(const void* values, std::size_t bytes) {
-  std::vector<unsigned char>& data = model_.buffers[0].data;
-  const std::size_t begin = data.size();
-  data.resize(begin + bytes);
-  if (bytes > 0) std::memcpy(data.data() + begin, values, bytes);
-}
-
-int GltfContent::add_accessor(int view, int type, int component, std::size_t offset, std::size_t count) {
-  tinygltf::Accessor accessor;
-  accessor.bufferView = view;
-  accessor.byteOffset = offset;
-  accessor.componentType = component;
-  accessor.type = type;
-  accessor.count = count;
-  model_.accessors.push_back(std::move(accessor));
-  return static_cast<int>(model_.accessors.size()) - 1;
-}
-
-int GltfContent::add_vertex_accessor(int view, int type, std::size_t first, std::size_t count) {
+int GltfContent::add_vertex_accessor(int view, std::size_t components, std::size_t first, std::size_t count) {
   if (view < 0) return -1;
-  const std::size_t stride = model_.bufferViews[static_cast<std::size_t>(view)].byteStride;
-  return add_accessor(view, type, TINYGLTF_COMPONENT_TYPE_FLOAT, first * stride, count);
+  const bool are_positions = view == mesh_views_.positions;
+  return accessors_.add("\"bufferView\":", view, ",\"byteOffset\":", 4 * components * first,
+                        ",\"componentType\":", float_32, ",\"count\":", count, ",\"type\":\"VEC", components, "\"",
+                        are_positions ? box_members(&mesh_->positions[3 * first], count) : "");
 }
 
-GltfContent::Accessors GltfContent::accessors(std::size_t first, std::size_t count) {
+const GltfContent::Attributes& GltfContent::attributes(std::size_t first, std::size_t count) {
   const auto [known, is_new] = ranges_.try_emplace({first, count});
-  if (!is_new) return known->second;
-  Accessors added;
-  added.positions = add_vertex_accessor(views_.positions, TINYGLTF_TYPE_VEC3, first, count);
-  add_box(model_.accessors.back(), first, count);
-  added.normals = add_vertex_accessor(views_.normals, TINYGLTF_TYPE_VEC3, first, count);
-  added.parameters = add_vertex_accessor(views_.parameters, TINYGLTF_TYPE_VEC2, first, count);
-  return known->second = added;
+  if (is_new)
+    known->second = {add_vertex_accessor(mesh_views_.positions, 3, first, count),
+                     add_vertex_accessor(mesh_views_.normals, 3, first, count),
+                     add_vertex_accessor(mesh_views_.parameters, 2, first, count)};
+  return known->second;
 }
 
-/// Adds the bounding box, which the format requires for positions.
-void GltfContent::add_box(tinygltf::Accessor& accessor, std::size_t first, std::size_t count) const {
-  const float* p = &mesh_->positions[3 * first];
-  std::array<float, 3> least{p[0], p[1], p[2]}, most = least;
-  for (std::size_t k = 0; k < count; ++k, p += 3)
-    for (std::size_t c = 0; c < 3; ++c) {
-      least[c] = std::min(least[c], p[c]);
-      most[c] = std::max(most[c], p[c]);
+/// The file's JSON: before the text of the buffer, if that is not binary, and after it.
+std::array<std::string, 2> GltfContent::json(bool binary) const {
+  std::vector<int> children(static_cast<std::size_t>(nodes_.count));
+  std::iota(children.begin(), children.end(), 1);
+  Objects nodes;
+  const std::string root = members(root_);
+  nodes.add(root, root.empty() || children.empty() ? "" : ",",
+            children.empty() ? "" : "\"children\":" + list(children));
+  if (nodes_.count > 0) append(nodes.text, separator, nodes_.text);
+  std::array<std::string, 2> text;
+  const auto array = [](const char* name, const Objects& objects) {
+    return std::string(",\n\"") + name + "\":[\n" + objects.text + "\n]";
+  };
+  append(text[0],
+         "{\"asset\":{\"generator\":\"Tessera\",\"version\":\"2.0\"},\n\"scene\":0,\"scenes\":[{\"nodes\":[0]}]",
+         array("nodes", nodes), array("meshes", meshes_), array("materials", materials_),
+         array("accessors", accessors_), array("bufferViews", views_), ",\n\"buffers\":[{\"byteLength\":", bytes_);
+  if (!binary) text[0] += ",\"uri\":\"data:application/octet-stream;base64,";
+  text[1] = binary ? "}]}" : "\"}]}\n";
+  return text;
+}
+
+void GltfContent::write_numbers(FunctionRef<void(std::string_view)> write) const {
+  for (const Numbers& numbers : numbers_) {
+    write(numbers.normals_of ? bytes_of(std::span<const float>(unit_normals(*numbers.normals_of)))
+                             : bytes_of(numbers.values));
+    for (std::span<const std::uint32_t> run : numbers.indices) {
+      if (numbers.first_vertex == 0) {
+        write(bytes_of(run));
+        continue;
+      }
+      std::array<std::uint32_t, 4096> shifted;
+      while (!run.empty()) {
+        const std::span part = run.first(std::min(run.size(), shifted.size()));
+        std::ranges::transform(part, shifted.begin(),
+                               [&](std::uint32_t index) { return index - numbers.first_vertex; });
+        write(bytes_of(std::span<const std::uint32_t>(shifted).first(part.size())));
+        run = run.subspan(part.size());
+      }
     }
-  accessor.minValues.assign(least.begin(), least.end());
-  accessor.maxValues.assign(most.begin(), most.end());
+  }
+}
+
+void GltfContent::write(OutputFile& out, bool binary) const {
+  std::array<std::string, 2> text = json(binary);
+  if (!binary) {
+    out.write(text[0]);
+    Base64Encoder encoder;
+    write_numbers([&](std::string_view bytes) {
+      for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), base64_piece)))
+        out.write(encoder.encode(bytes.substr(0, base64_piece)));
+    });
+    out.write(encoder.finish());
+    out.write(text[1]);
+    return;
+  }
+  std::string& chunk = text[0] += text[1];
+  chunk.resize((chunk.size() + 3) / 4 * 4, ' ');  // section 4.4.3
+  const auto number = [&](std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    out.write(bytes_of(std::span(&word, 1)));
+  };
+  out.write("glTF");
+  number(2), number(12 + 8 + chunk.size() + 8 + bytes_);
+  number(chunk.size()), out.write("JSON"), out.write(chunk);
+  number(bytes_), out.write(std::string_view("BIN\0", 4));
+  write_numbers([&](std::string_view bytes) { out.write(bytes); });
 }
 
 }}  // namespace tessera::abi_0_1

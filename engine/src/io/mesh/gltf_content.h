@@ -1,76 +1,104 @@
 #pragma once
 // The content of a glTF file that is written: numbers in one buffer, materials of colours, meshes and nodes.
 
-#include <tiny_gltf.h>
-
 #include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "base/function_ref.h"
+#include "io/file/output_file.h"
 #include "tessera/colour.h"
 #include "tessera/geometry.h"
 #include "tessera/mesh.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Builds a file of one scene with one node at its top. For meshes of triangles that are valid.
+/// Triangles with one material: indices of accessors, -1 for attributes that the mesh lacks, and of the material.
+struct GltfPrimitive {
+  int positions = -1, normals = -1, parameters = -1, indices = -1, material = 0;
+};
+
+/// Where a node stands, and what it shows.
+struct GltfNode {
+  std::string_view name = {};
+  int mesh = -1;          ///< -1: none
+  Affine placement = {};  ///< of the mesh, whose vertices are relative to the origin
+  Vec3 origin = {};
+};
+
+/// Builds a file of one scene with one node at its top. For meshes of triangles that are valid. Numbers are not copied:
+/// write() takes them from the meshes, which must live until then.
 class GltfContent {
  public:
-  /// `bytes`: the sum of byte_count() of all meshes that will be added.
-  explicit GltfContent(std::size_t bytes);
-
   /// The bytes of a mesh in the buffer.
   static std::size_t byte_count(const Mesh& mesh) {
     return 4 * (mesh.positions.size() + mesh.normals.size() + mesh.parameters.size() + mesh.indices.size());
   }
 
-  /// The node that holds all others.
-  tinygltf::Node& root() { return model_.nodes[0]; }
-  /// Names a node. Bytes of the name that are not UTF-8 become U+FFFD.
-  static void name(tinygltf::Node& node, const std::string& name);
-  /// Adds a child of the root. The node may move when another one is added.
-  tinygltf::Node& add_node(const std::string& name);
+  /// The node at the top, whose name must live until write().
+  explicit GltfContent(const GltfNode& root);
+  /// Adds a node below the top. Bytes of names that are not UTF-8 become U+FFFD.
+  void add_node(const GltfNode& node);
   /// Adds a mesh of these primitives, and returns its index.
-  int add_mesh(const std::string& name, std::vector<tinygltf::Primitive> primitives);
-  /// The material of a colour; without a colour a grey one.
+  int add_mesh(std::string_view name, std::span<const GltfPrimitive> primitives);
+  /// The material of a colour; without a colour a grey one, which is 0.
   int material(const std::optional<Colour>& colour);
 
   /// Adds the vertices of a mesh: positions, normals of unit length, parameters. Its primitives come next, before
   /// another mesh.
   void add_vertices(const Mesh& mesh);
+  /// Runs of the indices of a mesh, one after the other.
+  using IndexRuns = std::vector<std::span<const std::uint32_t>>;
   /// Adds a primitive without a material: triangles of the mesh whose vertices were added last. It refers to the
   /// vertices from `first` on, `count` of them, so primitives may share vertices and none is stored twice.
-  tinygltf::Primitive add_primitive(std::span<const std::uint32_t> indices, std::size_t first, std::size_t count);
+  GltfPrimitive add_primitive(IndexRuns indices, std::size_t first, std::size_t count);
 
-  tinygltf::Model take() && { return std::move(model_); }
+  /// Writes the file, as .glb or as .gltf with the numbers in base64. Failures are the file's.
+  void write(OutputFile& out, bool binary) const;
 
  private:
-  /// The accessors of a range of vertices; -1: the mesh lacks the attribute.
-  struct Accessors {
+  /// Objects of an array in JSON, as text.
+  struct Objects {
+    std::string text;
+    int count = 0;
+    /// Appends an object: texts as they are, numbers in the shortest form. Returns its index.
+    template <class... Parts>
+    int add(const Parts&... parts);
+  };
+  /// What the vertices of a range have, or the views of the last mesh; -1: the mesh lacks the attribute.
+  struct Attributes {
     int positions = -1, normals = -1, parameters = -1;
   };
-  /// Where the vertices and indices of the last mesh lie.
-  struct Views {
-    int positions = -1, normals = -1, parameters = -1, indices = -1;
+  /// A part of the buffer: the normals of a mesh, made of unit length, other numbers, or indices less the first vertex.
+  struct Numbers {
+    const Mesh* normals_of = nullptr;
+    std::span<const float> values = {};
+    IndexRuns indices = {};
+    std::uint32_t first_vertex = 0;
   };
 
-  tinygltf::BufferView view(int target, std::size_t bytes) const;
-  int add_view(const std::vector<float>& values, std::size_t components);
-  int add_accessor(int view, int type, int component, std::size_t offset, std::size_t count);
-  int add_vertex_accessor(int view, int type, std::size_t first, std::size_t count);
-  Accessors accessors(std::size_t first, std::size_t count);
-  void add_box(tinygltf::Accessor& accessor, std::size_t first, std::size_t count) const;
-  void append(const void* values, std::size_t bytes);
+  int add_view(std::size_t count, std::size_t components);
+  int add_vertex_accessor(int view, std::size_t components, std::size_t first, std::size_t count);
+  const Attributes& attributes(std::size_t first, std::size_t count);
+  std::array<std::string, 2> json(bool binary) const;
+  void write_numbers(FunctionRef<void(std::string_view)> write) const;
 
-  tinygltf::Model model_;
+  GltfNode root_;
+  Objects nodes_, meshes_, materials_, accessors_, views_;
+  std::vector<Numbers> numbers_;
+  std::size_t bytes_ = 0;  ///< of the buffer so far
   const Mesh* mesh_ = nullptr;
-  Views views_;
-  std::map<std::pair<std::size_t, std::size_t>, Accessors> ranges_;  ///< of mesh_, by first and count
-  std::map<std::array<float, 4>, int> materials_;                    ///< by colour
+  Attributes mesh_views_;
+  int index_view_ = -1;                                               ///< of mesh_
+  std::size_t index_bytes_ = 0;                                       ///< of mesh_ so far
+  std::map<std::pair<std::size_t, std::size_t>, Attributes> ranges_;  ///< of mesh_, by first and count
+  std::map<std::array<float, 4>, int> colours_;                       ///< materials
 };
 
 }}  // namespace tessera::abi_0_1

@@ -1,7 +1,4 @@
 #include "io/mesh/gltf_numbers.h"
-#include "io/file/text_cursor.h"
-
-#include <tiny_gltf.h>
 
 #include <cmath>
 #include <cstdint>
@@ -9,13 +6,13 @@
 #include <filesystem>
 #include <limits>
 
+#include "io/file/base64.h"
 #include "io/file/relative_path.h"
+#include "io/file/text_cursor.h"
 #include "io/json/json_reader.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-constexpr std::size_t max_data_uri = std::numeric_limits<std::int32_t>::max();  // tinygltf counts in int
 
 template <class T>
 double stored(const char* at, bool normalized) {
@@ -184,18 +181,19 @@ std::string_view GltfNumbers::load(const JsonValue& buffer, std::size_t size) {
 }
 
 std::string_view GltfNumbers::load_data(const JsonValue& uri) {
-  auto decoded = std::make_unique<std::vector<unsigned char>>();
-  std::string type;
-  if (uri.string().size() > max_data_uri)
-    uri.fail("data of more than 2 GiB within JSON is not read; export the file as .glb", StatusCode::unsupported);
-  if (!tinygltf::DecodeDataURI(decoded.get(), type, uri.string(), 0, false))
-    uri.fail(
-        "expected data:application/octet-stream;base64 or data:application/gltf-buffer;base64, and base64 after "
-        "it, found " +
-        quote(uri.string()));
-  decoded_.push_back(std::move(decoded));
-  const auto& bytes = *decoded_.back();
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  constexpr std::string_view headers[] = {"data:application/octet-stream;base64,",
+                                          "data:application/gltf-buffer;base64,"};
+  for (const std::string_view header : headers) {
+    if (!uri.string().starts_with(header)) continue;
+    std::optional<std::string> bytes = base64_decoded(uri.string().substr(header.size()));
+    if (!bytes || bytes->empty()) break;
+    decoded_.push_back(std::make_unique<const std::string>(*std::move(bytes)));
+    return *decoded_.back();
+  }
+  uri.fail(
+      "expected data:application/octet-stream;base64 or data:application/gltf-buffer;base64, and base64 after it, "
+      "found " +
+      quote(uri.string()));
 }
 
 std::string_view GltfNumbers::load_file(const JsonValue& uri) {

@@ -56,7 +56,7 @@ class GltfNumbers {
   std::map<std::string, std::vector<JsonValue>, std::less<>> lists_;
   std::map<std::string, std::unique_ptr<const std::string>> files_;  // by path, so that none is read twice
   std::map<std::size_t, std::string_view> buffers_;                  // by index
-  std::vector<std::unique_ptr<const std::vector<unsigned char>>> decoded_;
+  std::vector<std::unique_ptr<const std::string>> decoded_;
   std::size_t loaded_bytes_ = 0;
 };
 
