@@ -61,16 +61,15 @@ Status check_knots(int degree, std::span<const double> knots, const std::string&
   return check_multiplicity(degree, knots, name);
 }
 
-Status check_range(int degree, std::span<const double> knots, double from, double to, const std::string& name) {
+Status check_range(int degree, std::span<const double> knots, double from, double to, std::string_view name) {
   const double first = knots[static_cast<std::size_t>(degree)],
                last = knots[knots.size() - static_cast<std::size_t>(degree) - 1];
-  const std::string range = name + " [" + text(from) + ", " + text(to) + "]";
+  if (first <= from && from < to && to <= last) return {};
+  const std::string range = std::string(name) + " [" + text(from) + ", " + text(to) + "]";
   if (!std::isfinite(from) || !std::isfinite(to)) return {StatusCode::non_finite, range + " must be finite"};
   if (!(from < to)) return {StatusCode::invalid_argument, range + " is empty"};
-  if (from < first || to > last)
-    return {StatusCode::invalid_argument,
-            range + " exceeds that of the knots, [" + text(first) + ", " + text(last) + "]"};
-  return {};
+  return {StatusCode::invalid_argument,
+          range + " exceeds that of the knots, [" + text(first) + ", " + text(last) + "]"};
 }
 
 std::size_t multiplicity(std::span<const double> knots, double t) {

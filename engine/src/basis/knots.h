@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tessera/status.h"
@@ -30,7 +31,7 @@ struct KnotLine {
 /// knot).
 Status check_knots(int degree, std::span<const double> knots, const std::string& name);
 /// Checks that [from, to] lies within [u_p, u_{m+1}] and from < to. Errors: non_finite, invalid_argument.
-Status check_range(int degree, std::span<const double> knots, double from, double to, const std::string& name);
+Status check_range(int degree, std::span<const double> knots, double from, double to, std::string_view name);
 
 /// Returns how many knots equal t.
 std::size_t multiplicity(std::span<const double> knots, double t);

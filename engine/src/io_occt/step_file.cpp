@@ -229,8 +229,11 @@ Result<CadFile> load_step(const std::string& path) {
   Result<std::string> text = read_file(path);
   if (!text) return text.status();
   const TextEncoding encoding = encoding_of(*text);
-  StepKinds kinds;
-  if (const Result<StepIndex> index = StepIndex::make(*text); index) kinds = step_kinds(*index);
+  std::string contents, unread;
+  if (const Result<StepIndex> index = StepIndex::make(*text); index) {
+    const StepKinds kinds = step_kinds(*index);
+    contents = contents_of(kinds), unread = unread_shapes(kinds);
+  }
   MemoryFile recoded;
   if (encoding != TextEncoding::utf8) {
     Result<MemoryFile> copy = MemoryFile::make(to_utf8(*text, encoding), path);
@@ -253,10 +256,10 @@ Result<CadFile> load_step(const std::string& path) {
   collect_colours(reader, file);
   collect_moves(reader, file);
   file.file_unit = length_unit(reader);
-  file.contents = contents_of(kinds);
+  file.contents = contents;
   if (encoding != TextEncoding::utf8)
     file.notes.push_back(std::string("its names are not UTF-8, and are taken as ") + name_of(encoding));
-  if (const std::string unread = unread_shapes(kinds); !unread.empty())
+  if (!unread.empty())
     file.notes.push_back("shapes of these kinds are not read: " + unread);
   return file;
 }

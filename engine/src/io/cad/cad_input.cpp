@@ -32,7 +32,9 @@ Result<CadInput> CadInput::open(const fs::path& path) {
   // Must be a regular file, because it is read twice: a pipe would end, or block whoever opens it.
   if (fs::exists(facts) && !fs::is_regular_file(facts))
     return Status(StatusCode::unsupported, made.name_ + ": CAD files are read from regular files only");
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file;
+  file.rdbuf()->pubsetbuf(nullptr, 0);  // no buffer for four bytes
+  file.open(path, std::ios::binary);
   if (!file) return io_failure(path, "cannot be opened", errno);
   made.size_ = fs::file_size(path, error);
   if (error) return io_failure(path, "cannot be read", error.value());

@@ -66,14 +66,14 @@ std::string counts_of(const StepKinds& kinds, std::span<const std::string_view> 
 
 StepKinds step_kinds(const StepIndex& index) {
   StepKinds out;
-  for (const std::string_view kind : index.kinds())
-    if (const std::size_t count = index.of_kind(kind).size(); count > 0) out.emplace(kind, count);
+  for (std::size_t kind = 0; kind < index.kinds().size(); ++kind)
+    if (const std::size_t count = index.count_of(kind); count > 0) out.emplace(index.kinds()[kind], count);
   StepRecord record;
   for (const StepInstance& one : index.instances()) {
     if (one.kind != StepIndex::several_kinds) continue;
     const bool is_spline = index.record(one).find("B_SPLINE_") != std::string_view::npos;
     if (is_spline || !record.read(index.record(one)).ok()) continue;
-    for (std::size_t at = 0; at < record.size(); at = record[at].end) ++out[std::string(record[at].text)];
+    for (std::size_t at = 0; at < record.size(); at = record[at].end) ++out[record[at].text];
   }
   return out;
 }

@@ -10,8 +10,8 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// The number of entities of each kind, such as "ADVANCED_FACE". An entity of several kinds counts for each; rational
-/// splines, which are the most of these, are passed over.
-using StepKinds = std::map<std::string, std::size_t, std::less<>>;
+/// splines, which are the most of these, are passed over. Names are those in the index's text, which must outlive them.
+using StepKinds = std::map<std::string_view, std::size_t>;
 StepKinds step_kinds(const StepIndex& index);
 
 /// Shapes that neither reader takes, as "2 TESSELLATED_SOLID, 1 CSG_SOLID"; empty if there are none.

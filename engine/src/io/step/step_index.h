@@ -53,6 +53,8 @@ class StepIndex {
   std::span<const std::string_view> kinds() const { return kinds_; }  ///< distinct names, such as "ADVANCED_FACE"
   /// Returns the places in instances() of those of one kind alone.
   std::span<const std::uint32_t> of_kind(std::string_view kind) const;
+  /// Returns the number of instances of the kind kinds()[kind] alone.
+  std::size_t count_of(std::size_t kind) const { return first_of_kind_[kind + 1] - first_of_kind_[kind]; }
   /// Returns the places in instances() of those of several kinds that have a part of this one. Reads the text of all
   /// of several kinds, but for splines.
   std::vector<std::uint32_t> with_part(std::string_view kind) const;
