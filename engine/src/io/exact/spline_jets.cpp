@@ -76,37 +76,38 @@ CurvePlace FastCurve::operator()(double t) const {
 FastSurface::FastSurface(const BSplineSurface& surface)
     : surface_(surface),
       in_u_(surface_.knots_u(), surface_.degree_u(), surface_.domain().u0, surface_.domain().u1),
-      in_v_(surface_.knots_v(), surface_.degree_v(), surface_.domain().v0, surface_.domain().v1) {}
+      in_v_(surface_.knots_v(), surface_.degree_v(), surface_.domain().v0, surface_.domain().v1) {
+  const std::span<const double> weights = surface_.weights();
+  points_.reserve(surface_.points().size());
+  for (const Vec3& p : surface_.points()) {
+    const double w = weights.empty() ? 1 : weights[points_.size()];
+    points_.push_back({w * p.x, w * p.y, w * p.z, w});
+  }
+}
 
 SurfacePlace FastSurface::operator()(double u, double v) const {
+  using Sum = std::array<double, 4>;
   std::array<double, max_degree + 1> values_u, slopes_u, values_v, slopes_v;
   const std::size_t first_u = in_u_.evaluate(u, values_u.data(), slopes_u.data());
   const std::size_t first_v = in_v_.evaluate(v, values_v.data(), slopes_v.data());
   const auto p = static_cast<std::size_t>(surface_.degree_u()), q = static_cast<std::size_t>(surface_.degree_v());
-  const std::size_t row = surface_.count_v();
-  const bool is_rational = surface_.is_rational();
-  SurfacePlace out;
-  double weight = 0, weight_u = 0, weight_v = 0;
+  const auto add = [](Sum& sum, double share, const Sum& of) {
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += share * of[c];
+  };
+  Sum point{}, along_u{}, along_v{};
   for (std::size_t i = 0; i <= p; ++i) {
-    const std::size_t begin = (first_u + i) * row + first_v;
-    const Vec3* const points = surface_.points().data() + begin;
-    const double* const weights = is_rational ? surface_.weights().data() + begin : nullptr;
-    Vec3 value, slope;
-    double w = 0, w_slope = 0;
-    for (std::size_t j = 0; j <= q; ++j) {
-      const double scale = weights ? weights[j] : 1, a = scale * values_v[j], b = scale * slopes_v[j];
-      value += a * points[j], slope += b * points[j];
-      w += a, w_slope += b;
-    }
-    out.point += values_u[i] * value;
-    out.du += slopes_u[i] * value;
-    out.dv += values_u[i] * slope;
-    weight += values_u[i] * w, weight_u += slopes_u[i] * w, weight_v += values_u[i] * w_slope;
+    const Sum* const row = points_.data() + (first_u + i) * surface_.count_v() + first_v;
+    Sum value{}, slope{};
+    for (std::size_t j = 0; j <= q; ++j) add(value, values_v[j], row[j]), add(slope, slopes_v[j], row[j]);
+    add(point, values_u[i], value), add(along_u, slopes_u[i], value), add(along_v, values_u[i], slope);
   }
-  if (!is_rational) return out;
-  out.point = (1 / weight) * out.point;
-  out.du = (1 / weight) * (out.du - weight_u * out.point);
-  out.dv = (1 / weight) * (out.dv - weight_v * out.point);
+  const auto vector = [](const Sum& sum) { return Vec3{sum[0], sum[1], sum[2]}; };
+  SurfacePlace out{vector(point), vector(along_u), vector(along_v)};
+  if (!surface_.is_rational()) return out;
+  const double over = 1 / point[3];
+  out.point = over * out.point;
+  out.du = over * (out.du - along_u[3] * out.point);
+  out.dv = over * (out.dv - along_v[3] * out.point);
   return out;
 }
 

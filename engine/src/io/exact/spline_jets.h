@@ -1,6 +1,7 @@
 #pragma once
 // Points and first derivatives of spline curves and surfaces, fast: for searches that evaluate many places.
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -62,6 +63,7 @@ class FastSurface {
  private:
   BSplineSurface surface_;
   FastBasis in_u_, in_v_;
+  std::vector<std::array<double, 4>> points_;  ///< homogeneous: times the weight, then the weight itself
 };
 
 }}  // namespace tessera::abi_0_1
