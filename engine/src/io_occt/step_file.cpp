@@ -259,8 +259,7 @@ Result<CadFile> load_step(const std::string& path) {
   file.contents = contents;
   if (encoding != TextEncoding::utf8)
     file.notes.push_back(std::string("its names are not UTF-8, and are taken as ") + name_of(encoding));
-  if (!unread.empty())
-    file.notes.push_back("shapes of these kinds are not read: " + unread);
+  if (!unread.empty()) file.notes.push_back("shapes of these kinds are not read: " + unread);
   return file;
 }
 

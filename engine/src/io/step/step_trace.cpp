@@ -97,8 +97,8 @@ EdgeTrace EdgeTracer::trace(std::uint32_t edge, bool reversed, const std::option
   return out;
 }
 
-/// Returns the line along the pole at which two pieces meet, if they leave it at different parameters. The loop keeps the
-/// face on its left, so that the line runs towards smaller u where the pole is at the top.
+/// Returns the line along the pole at which two pieces meet, if they leave it at different parameters. The loop keeps
+/// the face on its left, so that the line runs towards smaller u where the pole is at the top.
 std::optional<EdgeTrace> EdgeTracer::along_pole(const EdgeTrace& before, const EdgeTrace& after,
                                                 bool is_closing) const {
   if (!before.ends_at_pole || !after.starts_at_pole) return {};
