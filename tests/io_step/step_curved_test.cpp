@@ -230,4 +230,43 @@ TEST(StepCurved, OffsetsLieAtTheirDistance) {
   expect_area(b.file({b.shell({b.face(outside, loops)}, "OPEN_SHELL")}), 15 * pi);
 }
 
+/// An open band at a distance from a swept surface, between circles of these heights and radii about z.
+std::string offset_band(StepBuilder b, int swept, const Vec3& low, const Vec3& high) {
+  const int offset = b.add("OFFSET_SURFACE(''," + b.ref_of(swept) + ",0.5,.F.)");
+  const auto circle = [&](const Vec3& at) { return b.edge(at, at, b.placed("CIRCLE", b.axes({0, 0, at.z}), {at.x})); };
+  const StepBuilder::Numbers loops{b.loop({circle(low)}), b.loop({-circle(high)})};
+  return b.file({b.shell({b.face(offset, loops)}, "OPEN_SHELL")});
+}
+
+TEST(StepCurved, OffsetsOfSweptCylindersAndConesAreExact) {
+  StepBuilder b;
+  const int circle = b.placed("CIRCLE", b.axes({0, 0, 1}, {0, 0, 1}, {0, 1, 0}), {2});
+  const int extruded = b.add("SURFACE_OF_LINEAR_EXTRUSION(''," + b.list({circle, b.vector({0, 0, 3})}).substr(1));
+  const int axis = b.add("AXIS1_PLACEMENT(''," + b.list({b.point({0, 0, 0}), b.direction({0, 0, 1})}).substr(1));
+  const auto revolved = [&](int profile) {
+    return b.add("SURFACE_OF_REVOLUTION(''," + b.list({profile, axis}).substr(1));
+  };
+  const int cylinder = revolved(b.line({0, 2, -1}, {0, 2, 5})), cone = revolved(b.line({2, 0, 0}, {5, 0, 4}));
+  const int spline_cone = revolved(spline(b, 1, {{2, 0, 0}, {2.6, 0, 0.8}}));
+  for (const int swept : {extruded, cylinder})
+    expect_area(offset_band(b, swept, {2.5, 0, 0}, {2.5, 0, 3}), 15 * pi, 1e-14);
+  // The generator (3, 4) / 5 moves by 0.5 along (4, -3) / 5.
+  for (const int swept : {cone, spline_cone})
+    expect_area(offset_band(b, swept, {2.4, 0, -0.3}, {3, 0, 0.5}), pi * (2.4 + 3) * 1, 1e-14);
+}
+
+TEST(StepCurved, OffsetsOfOtherSweepsAreFitted) {
+  StepBuilder b;
+  const int axis = b.add("AXIS1_PLACEMENT(''," + b.list({b.point({0, 0, 0}), b.direction({0, 0, 1})}).substr(1));
+  // A hyperboloid of one sheet; and the circle of a cylinder whose v runs against its axis.
+  const int turned = b.add("SURFACE_OF_REVOLUTION(''," + b.list({b.line({2, 0, 0}, {2, 1, 2}), axis}).substr(1));
+  const int circle = b.placed("CIRCLE", b.axes({0, 0, 3}), {3});
+  const int against = b.add("SURFACE_OF_LINEAR_EXTRUSION(''," + b.list({circle, b.vector({0, 0, -1})}).substr(1));
+  const auto warnings = [&](int swept, const Vec3& low, const Vec3& high) {
+    return value_of(read_step(offset_band(b, swept, low, high), "band")).warnings;
+  };
+  EXPECT_FALSE(warnings(turned, {2.5, 0, 0}, {2.7, 0, 2}).empty());
+  EXPECT_FALSE(warnings(against, {2.5, 0, 0}, {2.5, 0, 3}).empty());
+}
+
 }}  // namespace tessera::test

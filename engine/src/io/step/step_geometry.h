@@ -59,6 +59,9 @@ class StepGeometry : public StepCurves {
   std::uint64_t bare_surface(std::uint64_t number) const;
   /// Reads a plane, cylinder, cone, sphere or torus; nothing for other kinds.
   Result<std::optional<StepElementary>> elementary(std::uint64_t number) const;
+  /// Reads a circle that is extruded along its axis, or a line that is revolved, as the cylinder or the cone that they
+  /// are; nothing for other surfaces, nor where the parameters would differ.
+  Result<std::optional<StepElementary>> elementary_sweep(std::uint64_t number, const Box3& extent) const;
   /// Reads a surface of revolution or of extrusion; nothing for other kinds.
   ///
   /// - `extent`: the box of points of interest, which bounds profiles without ends.
@@ -74,6 +77,7 @@ class StepGeometry : public StepCurves {
   Result<Domain> trim_scales(std::uint64_t number, int depth) const;
   Result<FaceSurface> face(std::uint64_t number, const std::optional<Domain>& box, int depth) const;
   Result<StepElementary> elementary(StepEntity& entity) const;
+  Result<std::optional<StepElementary>> extruded_circle(std::uint64_t number) const;
   Result<FaceSurface> elementary(StepEntity& entity, const std::optional<Domain>& box) const;
   Result<FaceSurface> swept(StepEntity& entity, const std::optional<Domain>& box, int depth) const;
   Result<FaceSurface> spline_face(StepEntity& entity, const std::optional<Domain>& box) const;

@@ -256,7 +256,8 @@ std::unique_ptr<SurfaceInverse> SurfaceInverse::of_plane(const Frame& frame, dou
 Result<std::unique_ptr<SurfaceInverse>> SurfaceInverse::make_offset(const StepGeometry& geometry,
                                                                     const StepOffset& offset, const Box3& extent,
                                                                     double tolerance) {
-  const Result<std::optional<StepElementary>> simple = geometry.elementary(offset.basis);
+  Result<std::optional<StepElementary>> simple = geometry.elementary(offset.basis);
+  if (simple && !*simple) simple = geometry.elementary_sweep(offset.basis, extent);
   if (!simple) return simple.status();
   if (*simple) {
     const Result<StepElementary> moved = offset_by(**simple, offset.distance);

@@ -11,6 +11,8 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
+constexpr double far_away = std::numeric_limits<double>::infinity();
+
 Status check_box(const StepEntity& entity, const Domain& box) {
   const bool is_finite = std::isfinite(box.u1 - box.u0) && std::isfinite(box.v1 - box.v0);
   if (is_finite && box.u0 < box.u1 && box.v0 < box.v1) return {};
@@ -62,6 +64,31 @@ void read_weights(StepEntity& entity, Net& net) {
   }
   if (net.weights.size() != net.count_u * net.count_v)
     entity.fail("has " + counted(net.weights.size(), "weight") + " for " + counted(net.count_u * net.count_v, "point"));
+}
+
+/// The cylinder or cone of a line that is revolved.
+std::optional<StepElementary> revolved_line(const StepSweep& sweep) {
+  const SplineLine& line = sweep.profile;
+  if (line.degree != 1 || line.points.size() != 2 || line.arcs) return {};
+  const Vec3 &a = line.points[0], &b = line.points[1];
+  const double from = line.knots[1], to = line.knots[2];
+  const Vec3 along = (1 / (to - from)) * (b - a), start = a - from * along;  // where the parameter is 0
+  const double radius = std::hypot(start.x, start.y), size = std::max({max_abs(a), max_abs(b), radius});
+  constexpr double rounding = 1e-12;
+  if (!(radius > rounding * size) || std::abs(length(along) - 1) > rounding || !(along.z > rounding)) return {};
+  const Vec3 outwards{start.x / radius, start.y / radius, 0};
+  if (std::abs(cross(outwards, along).z) > rounding) return {};
+  const double opening = dot(outwards, along);
+  StepElementary out;
+  out.kind = std::abs(opening) > rounding ? StepElementaryKind::cone : StepElementaryKind::cylinder;
+  out.radius = radius;
+  if (out.kind == StepElementaryKind::cone) out.half_angle = std::atan2(opening, along.z);
+  out.frame.z = sweep.frame.z;
+  out.frame.x = outwards.x * sweep.frame.x + outwards.y * sweep.frame.y;
+  out.frame.y = cross(out.frame.z, out.frame.x);
+  out.frame.origin = sweep.frame.at({0, 0, start.z});
+  out.whole = {0, full_turn, -far_away, far_away};
+  return out;
 }
 
 }  // namespace
@@ -123,6 +150,34 @@ Result<std::optional<StepElementary>> StepGeometry::elementary(std::uint64_t num
   return std::optional<StepElementary>(*made);
 }
 
+Result<std::optional<StepElementary>> StepGeometry::elementary_sweep(std::uint64_t number, const Box3& extent) const {
+  StepEntity entity(index_, number);
+  if (entity.is("SURFACE_OF_LINEAR_EXTRUSION")) return extruded_circle(number);
+  if (!entity.is("SURFACE_OF_REVOLUTION")) return std::optional<StepElementary>();
+  const Result<std::optional<StepSweep>> turned = sweep(number, extent);
+  return turned ? revolved_line(**turned) : Result<std::optional<StepElementary>>(turned.status());
+}
+
+Result<std::optional<StepElementary>> StepGeometry::extruded_circle(std::uint64_t number) const {
+  StepEntity entity(index_, number);
+  const std::uint64_t along = entity.reference(entity.attribute(1)), by = entity.reference(entity.attribute(2));
+  StepEntity circle(index_, along);
+  if (!entity.status().ok() || !circle.is("CIRCLE")) return std::optional<StepElementary>();
+  const std::uint64_t position = circle.reference(circle.attribute(1));
+  StepElementary out;
+  out.kind = StepElementaryKind::cylinder;
+  out.radius = units_.length * circle.positive(circle.attribute(2), "radius");
+  if (!circle.status().ok()) return circle.status();
+  const Result<Frame> frame = placement(position);
+  if (!frame) return frame.status();
+  const Result<Vec3> direction = vector(by);
+  if (!direction) return direction.status();
+  if (length(normalized(*direction) - frame->z) > 1e-12) return std::optional<StepElementary>();
+  out.frame = *frame;
+  out.whole = {0, full_turn, -far_away, far_away};
+  return std::optional<StepElementary>(out);
+}
+
 Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   const bool is_plane = entity.is("PLANE"), is_cone = entity.is("CONICAL_SURFACE"), is_round = is_torus(entity);
   const std::uint64_t position = entity.reference(entity.attribute(1));
@@ -148,10 +203,9 @@ Result<StepElementary> StepGeometry::elementary(StepEntity& entity) const {
   const Result<Frame> frame = placement(position);
   if (!frame) return frame.status();
   out.frame = *frame;
-  constexpr double far = std::numeric_limits<double>::infinity();
-  out.whole = is_plane                                             ? Domain{-far, far, -far, far}
+  out.whole = is_plane                                             ? Domain{-far_away, far_away, -far_away, far_away}
               : is_round || out.kind == StepElementaryKind::sphere ? closed_box(entity, out.radius, out.minor)
-                                                                   : Domain{0, full_turn, -far, far};
+                                                                   : Domain{0, full_turn, -far_away, far_away};
   if (!entity.status().ok()) return entity.status();
   return out;
 }
