@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "io/json/json_scan.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -55,17 +56,30 @@ std::string readable(std::string_view message) {
 
 }  // namespace
 
-/// Turns the parser's events into the list of values. The parser itself needs one bit per level of nesting.
+/// Turns a parser's events into the list of values. What the fast pass stops at is parsed by nlohmann's parser, which
+/// says what is wrong; it needs one bit per level of nesting.
 class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit JsonBuilder(JsonDocument& document) : document_(document) {}
 
   Status run() {
+    if (JsonScan<JsonBuilder>(document_.text_, read_, *this).run()) return {};
+    document_.nodes_.clear(), document_.strings_.clear();
+    open_.clear(), read_ = 0, status_ = {};
     const char* const begin = document_.text_.data();
     const CountingIterator first{begin, &read_}, last{begin + document_.text_.size(), &read_};
     const bool whole = nlohmann::json::sax_parse(first, last, this);
     if (!whole && status_.ok()) status_ = failure("this is not JSON");
     return status_;
+  }
+
+  // Events of the fast pass that nlohmann's parser has in other forms.
+  bool number(double value) { return add_number(value); }
+  bool start_object() { return open(JsonKind::object); }
+  bool start_array() { return open(JsonKind::array); }
+  static std::optional<std::string> quoted(std::string_view token) {
+    const nlohmann::json parsed = nlohmann::json::parse(token, nullptr, false);
+    return parsed.is_string() ? std::optional(parsed.get<std::string>()) : std::nullopt;
   }
 
   bool null() override { return add(JsonKind::null, {.number = 0}); }
