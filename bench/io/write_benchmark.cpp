@@ -1,4 +1,4 @@
-// Writes meshes to files: write.ply, write.stl and write.obj, of a mesh of two million triangles, into the folder that
+// Writes meshes to files: write.ply, glb, stl and obj, of a mesh of two million triangles, into the folder that
 // TMPDIR names. Each file is read back and compared before the rate is reported. disk_fraction is the time of write(2)
 // for the same bytes, in pieces of a MiB as dd writes them, in the same process and folder, over the time of
 // write_mesh; synced_fraction is the same with fsync(2) after both.
@@ -131,7 +131,7 @@ void write(benchmark::State& state, const char* name) {
 }
 
 const bool registered = [] {
-  for (const char* name : {"m.ply", "m.stl", "m.obj"})
+  for (const char* name : {"m.ply", "m.glb", "m.stl", "m.obj"})
     add_case({std::string("write.") + (name + 2), "mesh", "-", "2M"}, Part::full,
              [name](benchmark::State& state) { write(state, name); });
   return true;
