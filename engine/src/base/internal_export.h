@@ -4,5 +4,6 @@
 
 #define TESSERA_INTERNAL_EXPORT [[gnu::visibility("default")]]
 
-/// For explicit instantiations of public function templates: gcc forgets that the header exports them.
-#define TESSERA_EXPORT [[gnu::visibility("default")]]
+/// For explicit instantiations of public function templates: gcc forgets that the header exports them. In GNU's form,
+/// which clang takes there too.
+#define TESSERA_EXPORT __attribute__((visibility("default")))
