@@ -2,7 +2,8 @@
 #   oneTBB            libtbb-dev 2021.8           the core: threads (engine/src/parallel alone includes it)
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
 #   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone, and ray_embree.h); 4 will do
-#   OpenCASCADE       libocct-data-exchange-dev 7.6  tessera-cad-reader (engine/src/io_occt alone); optional
+#   OpenCASCADE       libocct-modeling-data-dev 7.6  tessera::occt (engine/src/occt and io_occt alone, and occt.h); optional
+#                     libocct-data-exchange-dev 7.6  tessera-cad-reader (engine/src/io_occt alone); optional
 #   Open MPI          libopenmpi-dev 4.1, openmpi-bin  tessera::mpi (engine/src/mpi alone, and mpi.h), tessera_mpi; optional
 #   CLI11             libcli11-dev 2.1            the command line
 #   nlohmann-json     nlohmann-json3-dev 3.11     tessera::io: models (headers only, within engine/src/io);
@@ -66,11 +67,21 @@ if(TESSERA_BUILD_IO)
     message(STATUS "Packed files (.gz) are not read: zlib is not found (zlib1g-dev)")
   endif()
 endif()
-# Whether tessera-cad-reader is built.
+# Whether tessera::occt is built, and tessera-cad-reader, which stands on it.
+set(TESSERA_HAS_OCCT OFF)
 set(TESSERA_HAS_CAD_READER OFF)
-if(TESSERA_BUILD_IO AND TESSERA_BUILD_CAD_READER)
+if(TESSERA_BUILD_OCCT OR (TESSERA_BUILD_IO AND TESSERA_BUILD_CAD_READER))
   include(TesseraOpenCascade)
-  set(TESSERA_HAS_CAD_READER ${tessera_OpenCASCADE_FOUND})
+  set(TESSERA_HAS_OCCT ${tessera_OpenCASCADE_FOUND})
+  if(NOT TESSERA_HAS_OCCT AND TESSERA_BUILD_OCCT STREQUAL "AUTO")
+    message(STATUS "tessera::occt is left out: OpenCASCADE is not found (tools/setup.sh --for cad)")
+  elseif(NOT TESSERA_HAS_OCCT AND TESSERA_BUILD_OCCT)
+    message(FATAL_ERROR "TESSERA_BUILD_OCCT is ON, but OpenCASCADE 7.5 or later is not found. "
+      "On Debian it is libocct-modeling-data-dev.")
+  endif()
+endif()
+if(TESSERA_BUILD_IO AND TESSERA_BUILD_CAD_READER)
+  set(TESSERA_HAS_CAD_READER ${tessera_OpenCASCADE_exchange_FOUND})
   if(NOT TESSERA_HAS_CAD_READER AND TESSERA_BUILD_CAD_READER STREQUAL "AUTO")
     message(STATUS "tessera-cad-reader (IGES, BREP, STEP on request) is left out: OpenCASCADE is not found "
       "(tools/cad_reader.sh installs it)")

@@ -79,6 +79,14 @@ if(TESSERA_HAS_MPI)
 else()
   list(APPEND left_out PATTERN "mpi.h" EXCLUDE)
 endif()
+if(TESSERA_HAS_OCCT AND TESSERA_BUILD_OCCT)  # else the reader alone stands on it
+  tessera_install_component(occt tessera_occt_library)
+  tessera_install_pkg_config(tessera-occt tessera_occt_library "Tessera's models of OpenCASCADE's shapes" ON tessera
+    LIBS "-L${OpenCASCADE_LIBRARY_DIR} -lTKBRep -lTKGeomBase -lTKG3d -lTKG2d -lTKMath -lTKernel"
+    CFLAGS "-I${OpenCASCADE_INCLUDE_DIR}")
+else()
+  list(APPEND left_out PATTERN "occt*.h" EXCLUDE)
+endif()
 if(TESSERA_BUILD_C)
   tessera_install_component(c tessera_c_library)
   tessera_install_pkg_config(tessera-c tessera_c_library "Tessera for C and for languages that call C")

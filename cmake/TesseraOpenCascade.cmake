@@ -1,5 +1,5 @@
 # Finds OpenCASCADE (7.5 or later; its own version file lets no other patch version pass) and sets
-# tessera_OpenCASCADE_FOUND. What its package adds to the compile definitions of the folder is taken back: only the
+# tessera_OpenCASCADE_FOUND, and tessera_OpenCASCADE_exchange_FOUND for its readers of files. What its package adds to the compile definitions of the folder is taken back: only the
 # targets are wanted.
 
 get_directory_property(_tessera_definitions COMPILE_DEFINITIONS)
@@ -8,8 +8,12 @@ set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "${_tessera_definitions}
 unset(_tessera_definitions)
 
 set(tessera_OpenCASCADE_FOUND FALSE)
-if(OpenCASCADE_FOUND AND TARGET TKSTEP AND TARGET TKIGES)
+set(tessera_OpenCASCADE_exchange_FOUND FALSE)
+if(OpenCASCADE_FOUND AND TARGET TKBRep)
   if("${OpenCASCADE_MAJOR_VERSION}.${OpenCASCADE_MINOR_VERSION}" VERSION_GREATER_EQUAL 7.5)
     set(tessera_OpenCASCADE_FOUND TRUE)
+    if(TARGET TKSTEP AND TARGET TKIGES)
+      set(tessera_OpenCASCADE_exchange_FOUND TRUE)
+    endif()
   endif()
 endif()

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "io_occt/cad_shapes.h"
-#include "io_occt/shape_model.h"
+#include "occt/shape_model.h"
 #include "peers/file_arguments.h"
 #include "peers/interleaved.h"
 #include "peers/joined_shape.h"
@@ -81,7 +81,7 @@ std::size_t triangles_of(const TopoDS_Shape& shape) {
 
 /// Returns whether no closed solid has an open edge.
 bool report(const std::filesystem::path& file) {
-  const Result<CadFile> read = test::load_cad(file);
+  const Result<DescribedShape> read = test::load_cad(file);
   const Result<Model> model = read ? model_of(*read, file) : Result<Model>(read.status());
   if (!model || model->shapes.empty()) {
     std::printf("%s: %s\n", file.filename().c_str(), model ? "no shapes" : model.status().message().c_str());

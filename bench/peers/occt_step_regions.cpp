@@ -284,7 +284,7 @@ Counts compare_file(const fs::path& file, int points) {
   const std::string text = value_or_throw(read_file(file));
   const Model model = value_or_throw(read_step(text, file.filename()));
   const std::vector<std::vector<std::uint64_t>> numbers = numbers_of_faces(text, model);
-  const CadFile peer = value_or_throw(load_step(file));
+  const DescribedShape peer = value_or_throw(load_step(file));
   std::map<std::string, std::deque<PeerFace>> peers;
   std::set<const void*> seen;
   for (TopExp_Explorer at(peer.shape, TopAbs_FACE); at.More(); at.Next()) {

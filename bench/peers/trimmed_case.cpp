@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "io_occt/cad_file.h"
-#include "io_occt/shape_model.h"
+#include "occt/shape_model.h"
 #include "support/synthetic_sets.h"
 
 namespace tessera::bench {
@@ -42,7 +42,7 @@ T value_or_throw(Result<T> result) {
   return *std::move(result);
 }
 
-CadFile load(const std::filesystem::path& file) {
+DescribedShape load(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](char c) { return static_cast<char>(std::tolower(c)); });
   const bool step = ending == ".stp" || ending == ".step", iges = ending == ".igs" || ending == ".iges";
@@ -68,7 +68,7 @@ std::size_t TrimmedCase::trimmed_faces() const {
 }
 
 TrimmedCase read_case(const std::filesystem::path& file, bool expands) {
-  CadFile cad = load(file);
+  DescribedShape cad = load(file);
   TrimmedCase one;
   one.name = file.filename().string();
   one.as_read = cad.shape;

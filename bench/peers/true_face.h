@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "io_occt/face_loops.h"
-#include "io_occt/face_surface.h"
+#include "occt/face_loops.h"
+#include "occt/face_surface.h"
 #include "tessera/geometry.h"
 
 namespace tessera::bench {

@@ -24,7 +24,8 @@ def main():
     compiler, include = sys.argv[1], pathlib.Path(sys.argv[2])
     version = subprocess.run([compiler, '-dumpfullversion'], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
     headers = sorted(path.relative_to(include).as_posix() for path in include.glob('tessera/*.h'))
-    headers = [name for name in headers if name not in ('tessera/mpi.h', 'tessera/ray_embree.h')]  # MPI's and Embree's
+    others = ('tessera/mpi.h', 'tessera/ray_embree.h', 'tessera/occt')  # with headers of MPI, Embree and OpenCASCADE
+    headers = [name for name in headers if not name.startswith(others)]
     found = {name: lines_of(compiler, include, name) for name in headers}
     if '--write' in sys.argv:
         TABLE.write_text(f'g++ {version}\n' + ''.join(f'{count:6} {name}\n' for name, count in found.items()))

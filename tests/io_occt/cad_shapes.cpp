@@ -48,7 +48,7 @@ Result<Model> read_by_opencascade(const std::filesystem::path& path, CadOptions 
   return read_cad(path, options);
 }
 
-Result<CadFile> load_cad(const std::string& path) {
+Result<DescribedShape> load_cad(const std::string& path) {
   return is_step(path) ? load_step(path) : is_brep(path) ? load_brep(path) : load_iges(path);
 }
 

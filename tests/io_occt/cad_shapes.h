@@ -18,7 +18,7 @@ void write_cad(const TopoDS_Shape& shape, const std::string& path);
 /// The model of a file that the program tessera-cad-reader reads, whoever reads STEP by default.
 Result<Model> read_by_opencascade(const std::filesystem::path& path, CadOptions options = {});
 /// The file as OpenCASCADE reads it, in this process.
-Result<CadFile> load_cad(const std::string& path);
+Result<DescribedShape> load_cad(const std::string& path);
 /// In the order of models.
 std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape);
 

@@ -75,7 +75,7 @@ void add(const Shape& shape, std::size_t instances, double tolerance, Totals& to
 
 /// Meshes a file at ten tolerances.
 void check_file(const std::filesystem::path& path) {
-  const Result<CadFile> file = load_cad(path);
+  const Result<DescribedShape> file = load_cad(path);
   const Result<Model> model = read_by_opencascade(path);
   if (!file || !model || model->shapes.empty()) return;
   std::map<std::uint32_t, std::size_t> instances;

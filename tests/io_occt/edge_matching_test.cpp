@@ -81,7 +81,7 @@ TEST(EdgeMatching, OfRealFilesIsOpenCascadesSewing) {
     if (path.extension() != ".igs" && path.extension() != ".iges") continue;
     const Result<Model> model = read_by_opencascade(path.string());
     if (!model || model->shapes.empty()) continue;
-    const Result<CadFile> file = load_cad(path.string());
+    const Result<DescribedShape> file = load_cad(path.string());
     ASSERT_TRUE(file.ok()) << path;
     const std::string name = path.filename().string();
     const double size = size_of(*model);

@@ -139,7 +139,7 @@ void compare_solids(const std::string& file, const TopoDS_Shape& shape, const Mo
 }
 
 void compare(const std::string& file, Differences& all) {
-  const Result<CadFile> loaded = load_cad(file);
+  const Result<DescribedShape> loaded = load_cad(file);
   const Result<Model> model = read_by_opencascade(file);
   if (!loaded || !model || model->surfaces.empty()) return;
   ++all.files;

@@ -116,7 +116,7 @@ TEST(SectionOfParts, LengthsAreThoseOfOpenCascade) {
   for (const std::filesystem::path& path : real_cad_files()) {
     const std::optional<ClosedPart> part = closed_part(path);
     if (!part || part->model.surfaces.size() > 300) continue;
-    const Result<CadFile> file = load_cad(path);
+    const Result<DescribedShape> file = load_cad(path);
     if (!file) continue;
     ++parts;
     const double size = part->set.box().diagonal();

@@ -68,7 +68,7 @@ int side_by_vote(const RayScene& scene, const Vec3& point, Random& random) {
 }
 
 void compare(const std::filesystem::path& path, SolidTally& all) {
-  const Result<CadFile> loaded = load_cad(path.string());
+  const Result<DescribedShape> loaded = load_cad(path.string());
   const Result<Model> model = read_by_opencascade(path.string());
   if (!loaded || !model || model->surfaces.empty()) return;
   Classifiers theirs(loaded->shape);

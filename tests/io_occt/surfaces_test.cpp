@@ -29,10 +29,10 @@
 #include <random>
 
 #include "io_occt/cad_shapes.h"
-#include "io_occt/face_loops.h"
-#include "io_occt/face_surface.h"
-#include "io_occt/shape_model.h"
-#include "io_occt/spline_line.h"
+#include "occt/face_loops.h"
+#include "occt/face_surface.h"
+#include "occt/shape_model.h"
+#include "occt/spline_line.h"
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
 
@@ -270,7 +270,7 @@ TEST(FaceSurface, RealFacesAreWhereOpenCascadeHasThem) {
   std::size_t exact = 0, fitted = 0;
   double worst = 0;
   for (const std::filesystem::path& path : files) {
-    const Result<CadFile> file = load_cad(path.string());
+    const Result<DescribedShape> file = load_cad(path.string());
     ASSERT_TRUE(file.ok()) << file.status().message();
     for (const TopoDS_Face& face : faces_of(file->shape)) {
       TopLoc_Location place;
@@ -365,7 +365,7 @@ TEST(ReadCad, IsWhatThisProcessMakesOfTheFile) {
   for (const std::filesystem::path& path : files) {
     const Result<Model> read = read_by_opencascade(path);
     if (read.status().code() == StatusCode::internal) continue;  // OpenCASCADE crashes, and would end this process
-    const Result<CadFile> file = load_cad(path.string());
+    const Result<DescribedShape> file = load_cad(path.string());
     const Result<Model> here = file ? model_of(*file, path.string()) : Result<Model>(file.status());
     ASSERT_EQ(here.ok(), read.ok());
     EXPECT_EQ(here.status().message(), read.status().message());

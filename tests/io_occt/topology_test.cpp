@@ -142,7 +142,7 @@ double topology_size_of(const Model& model) {
 
 /// Compares counts, places of vertices, and gaps.
 void compare(const std::string& path) {
-  const Result<CadFile> file = load_cad(path);
+  const Result<DescribedShape> file = load_cad(path);
   ASSERT_TRUE(file.ok()) << file.status().message();
   const Result<Model> model = read_by_opencascade(path);
   ASSERT_TRUE(model.ok()) << model.status().message();

@@ -22,8 +22,8 @@
 #include <set>
 
 #include "io_occt/cad_shapes.h"
-#include "io_occt/face_loops.h"
-#include "io_occt/face_surface.h"
+#include "occt/face_loops.h"
+#include "occt/face_surface.h"
 #include "support/scratch_folder.h"
 #include "tessera/cad.h"
 #include "tessera/convert.h"
@@ -172,7 +172,7 @@ TEST(TrimRegions, AreThoseOfOpenCascadeInEveryFormat) {
       const std::string path = folder / (name + extension);
       write_cad(shape, path);
       if (path.ends_with("igs")) types.merge(entity_types(path));
-      const Result<CadFile> file = load_cad(path);
+      const Result<DescribedShape> file = load_cad(path);
       ASSERT_TRUE(file.ok()) << path << file.status().message();
       compare_all(file->shape, 2000, random, counts, name + extension);
     }
@@ -195,7 +195,7 @@ TEST(TrimRegions, OfRealFacesAreThoseOfOpenCascade) {
   std::size_t read = 0;
   std::set<int> types;
   for (const std::filesystem::path& path : files) {
-    const Result<CadFile> file = load_cad(path);
+    const Result<DescribedShape> file = load_cad(path);
     if (!file) continue;
     TrimRegionsCounts counts;
     compare_all(file->shape, 300, random, counts, path.filename());

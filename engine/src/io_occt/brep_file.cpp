@@ -84,7 +84,7 @@ Result<std::string> with_known_line(const std::string& path, std::string_view be
 
 }  // namespace
 
-Result<CadFile> load_brep(const std::string& path) {
+Result<DescribedShape> load_brep(const std::string& path) {
   std::string failure;
   take_messages(failure);
   std::ifstream stream(path, std::ios::binary);
@@ -98,7 +98,7 @@ Result<CadFile> load_brep(const std::string& path) {
   if (!text) return text.status();
   std::istringstream restated(*text);
   std::istream& source = text->empty() ? static_cast<std::istream&>(stream) : restated;
-  CadFile file;
+  DescribedShape file;
   try {
     // OpenCASCADE does not see that the stream fails: it would read on for ever, and accept what is not there.
     source.exceptions(std::ios::failbit | std::ios::badbit);

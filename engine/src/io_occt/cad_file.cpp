@@ -41,7 +41,8 @@ class LastFailure : public Message_Printer {
   std::string& text_;
 };
 
-void collect_complaints(const Interface_InterfaceModel& model, const Interface_CheckIterator& checks, CadFile& file) {
+void collect_complaints(const Interface_InterfaceModel& model, const Interface_CheckIterator& checks,
+                        DescribedShape& file) {
   for (checks.Start(); checks.More(); checks.Next()) {
     const handle<Interface_Check>& check = checks.Value();
     const std::string label = label_of(model, check->Entity());
@@ -76,8 +77,8 @@ Colour colour_of(const Quantity_Color& colour, double alpha) {
   return {part(red), part(green), part(blue), part(alpha)};
 }
 
-CadFile transferred(const XSControl_Reader& reader) {
-  CadFile file;
+DescribedShape transferred(const XSControl_Reader& reader) {
+  DescribedShape file;
   file.shape = reader.OneShape();
   file.unit = "mm";
   const handle<Interface_InterfaceModel> model = reader.Model();

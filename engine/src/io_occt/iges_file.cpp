@@ -160,7 +160,7 @@ std::optional<Colour> colour_of(const IGESData_IGESEntity& entity) {
   return Colour{part(red), part(green), part(blue)};
 }
 
-void collect_names(const XSControl_Reader& reader, TextEncoding encoding, CadFile& file) {
+void collect_names(const XSControl_Reader& reader, TextEncoding encoding, DescribedShape& file) {
   bool recoded = false;
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   for (int k = 1; k <= process->NbMapped(); ++k) {
@@ -191,7 +191,7 @@ handle<Standard_Transient> whole_surface(const handle<Standard_Transient>& entit
 
 /// The ranges that surfaces state, from the file's text: OpenCASCADE ignores them, and its version 7.6 mixes up those
 /// of u and v.
-void collect_ranges(const XSControl_Reader& reader, std::string_view text, CadFile& file) {
+void collect_ranges(const XSControl_Reader& reader, std::string_view text, DescribedShape& file) {
   std::map<std::string, Domain> stated;
   for (const IgesSurface& surface : iges_surfaces(text)) {
     const std::size_t k = surface.ranges();
@@ -231,7 +231,7 @@ std::string types_of(const Interface_InterfaceModel& model) {
 
 }  // namespace
 
-Result<CadFile> load_iges(const std::string& path) {
+Result<DescribedShape> load_iges(const std::string& path) {
   if (Status status = check_iges_sections(path); !status.ok()) return status;
   const Result<std::string> text = read_file(path);
   if (!text) return text.status();
@@ -254,7 +254,7 @@ Result<CadFile> load_iges(const std::string& path) {
                   path + ": OpenCASCADE cannot read it as IGES" + (failure.empty() ? "" : ": " + failure));
   }
   reader.TransferRoots();
-  CadFile file = transferred(reader);
+  DescribedShape file = transferred(reader);
   collect_names(reader, encoding_of(*text), file);
   collect_ranges(reader, *text, file);
   file.contents = types_of(*reader.Model());

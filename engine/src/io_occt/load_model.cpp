@@ -9,7 +9,7 @@
 
 #include "io/file/memory_file.h"
 #include "io_occt/cad_file.h"
-#include "io_occt/shape_model.h"
+#include "occt/shape_model.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 
@@ -53,7 +53,7 @@ Result<MarklessFile> MarklessFile::make(const std::string& path) {
 
 struct Loader {
   std::string_view format;
-  Result<CadFile> (*load)(const std::string& path);
+  Result<DescribedShape> (*load)(const std::string& path);
 };
 constexpr std::array<Loader, 3> loaders{{{"STEP", load_step}, {"IGES", load_iges}, {"BREP", load_brep}}};
 
@@ -67,7 +67,7 @@ Result<Model> load(const Loader& loader, const std::string& path) {
   try {
     const Result<MarklessFile> plain = MarklessFile::make(path);
     if (!plain) return plain.status();
-    const Result<CadFile> file = loader.load(plain->path());
+    const Result<DescribedShape> file = loader.load(plain->path());
     return file ? model_of(*file, path) : Result<Model>(renamed(file.status(), plain->path(), path));
   } catch (const Standard_OutOfMemory&) {
     return Status(StatusCode::out_of_memory, path + ": OpenCASCADE exceeded its memory limit");

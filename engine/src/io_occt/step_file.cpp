@@ -45,8 +45,8 @@
 #include "io/step/step_contents.h"
 #include "io/step/step_index.h"
 #include "io_occt/cad_file.h"
-#include "io_occt/part_tree.h"
-#include "io_occt/spline_line.h"
+#include "occt/part_tree.h"
+#include "occt/spline_line.h"
 #include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -135,7 +135,7 @@ bool is_identity(const Affine& map, double size) {
 
 /// Collects the colours of solids, shells and faces, wherever they stand and at single instances. Colours of edges are
 /// left out.
-void collect_colours(const XSControl_Reader& reader, CadFile& file) {
+void collect_colours(const XSControl_Reader& reader, DescribedShape& file) {
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   STEPConstruct_Styles styles(reader.WS());
   if (!styles.LoadStyles()) return;
@@ -152,7 +152,7 @@ void collect_colours(const XSControl_Reader& reader, CadFile& file) {
     if (shown.IsNull() || style->Item().IsNull() || !STEPConstruct_Styles::DecodeColor(shown, colour)) continue;
     const TopoDS_Shape shape = STEPConstruct::FindShape(process, style->Item());
     if (shape.IsNull()) continue;
-    CadFile::Colours* colours = &file.colours;
+    DescribedShape::Colours* colours = &file.colours;
     if (const std::vector<Entity> contexts = contexts_of(*style); !contexts.empty()) {
       const TopoDS_Shape instance = contexts.size() == 1 ? instances.shape_of(contexts[0]) : TopoDS_Shape();
       if (instance.IsNull()) {
@@ -168,7 +168,7 @@ void collect_colours(const XSControl_Reader& reader, CadFile& file) {
 }
 
 /// Collects the scales and mirrors of mapped items: OpenCASCADE places these rigidly.
-void collect_moves(const XSControl_Reader& reader, CadFile& file) {
+void collect_moves(const XSControl_Reader& reader, DescribedShape& file) {
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   for (int k = 1; k <= process->NbMapped(); ++k) {
     const auto item = handle<StepRepr_MappedItem>::DownCast(process->Mapped(k));
@@ -193,7 +193,7 @@ std::string name_of(const StepBasic_ProductDefinition& definition) {
   return {};
 }
 
-void collect_names(const XSControl_Reader& reader, CadFile& file) {
+void collect_names(const XSControl_Reader& reader, DescribedShape& file) {
   const handle<Transfer_TransientProcess>& process = reader.WS()->TransferReader()->TransientProcess();
   for (int k = 1; k <= process->NbMapped(); ++k) {
     const TopoDS_Shape shape = TransferBRep::ShapeResult(process->MapItem(k));
@@ -225,7 +225,7 @@ void transfer_representations(STEPControl_Reader& reader) {
 
 }  // namespace
 
-Result<CadFile> load_step(const std::string& path) {
+Result<DescribedShape> load_step(const std::string& path) {
   Result<std::string> text = read_file(path);
   if (!text) return text.status();
   const TextEncoding encoding = encoding_of(*text);
@@ -251,7 +251,7 @@ Result<CadFile> load_step(const std::string& path) {
   }
   reader.TransferRoots();
   if (reader.NbShapes() == 0) transfer_representations(reader);
-  CadFile file = transferred(reader);
+  DescribedShape file = transferred(reader);
   collect_names(reader, file);
   collect_colours(reader, file);
   collect_moves(reader, file);

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "io/exact/spline_line.h"
+#include "exact/spline_line.h"
 #include "io/step/step_points.h"
 #include "tessera/curve.h"
 

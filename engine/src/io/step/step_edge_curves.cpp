@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "io/exact/curve_foot.h"
+#include "exact/curve_foot.h"
 #include "io/step/step_curves.h"
 #include "io/step/step_splines.h"
 #include "tessera/convert.h"

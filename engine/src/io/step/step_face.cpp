@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "io/exact/transposed.h"
+#include "exact/transposed.h"
 #include "io/step/step_face_box.h"
 #include "io/step/step_inverse.h"
 #include "io/step/step_outline.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "io/exact/face_box.h"
+#include "exact/face_box.h"
 #include "io/step/step_trace.h"
 #include "tessera/status.h"
 

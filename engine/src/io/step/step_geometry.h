@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "io/exact/swept_surface.h"
+#include "exact/swept_surface.h"
 #include "io/step/step_curves.h"
 
 namespace tessera { inline namespace abi_0_1 {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "io/exact/curve_foot.h"
+#include "exact/curve_foot.h"
 #include "io/step/step_offset.h"
 #include "io/step/step_replica.h"
 #include "io/step/step_sphere_axis.h"

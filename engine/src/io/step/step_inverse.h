@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "io/exact/face_box.h"
+#include "exact/face_box.h"
 #include "io/step/step_geometry.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/exact/spline_jets.h"
+#include "exact/spline_jets.h"
 #include "tessera/convert.h"
 #include "tessera/parametric_surface.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/exact/swept_surface.h"
+#include "exact/swept_surface.h"
 #include "io/step/step_entity.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "io/exact/usable_edges.h"
+#include "exact/usable_edges.h"
 #include "io/step/step_face.h"
 #include "io/step/step_shell_sides.h"
 #include "io/step/step_topology.h"

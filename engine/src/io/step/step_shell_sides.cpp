@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "io/exact/spline_jets.h"
-#include "io/exact/transposed.h"
+#include "exact/spline_jets.h"
+#include "exact/transposed.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

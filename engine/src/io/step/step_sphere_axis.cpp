@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "io/exact/curve_foot.h"
+#include "exact/curve_foot.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/exact/spline_jets.h"
+#include "exact/spline_jets.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

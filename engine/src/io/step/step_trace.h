@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "io/exact/spline_jets.h"
+#include "exact/spline_jets.h"
 #include "io/step/step_inverse.h"
 #include "io/step/step_topology.h"
 #include "tessera/brep.h"

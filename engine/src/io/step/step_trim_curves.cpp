@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "convert/fit/lobatto_fit.h"
-#include "io/exact/coedge_parameter.h"
-#include "io/exact/spline_jets.h"
+#include "exact/coedge_parameter.h"
+#include "exact/spline_jets.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

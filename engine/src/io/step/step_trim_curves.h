@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "io/exact/face_box.h"
-#include "io/exact/swept_surface.h"
+#include "exact/face_box.h"
+#include "exact/swept_surface.h"
 #include "io/step/step_trace.h"
 #include "tessera/brep.h"
 #include "tessera/status.h"

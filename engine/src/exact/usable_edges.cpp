@@ -1,4 +1,4 @@
-#include "io/exact/usable_edges.h"
+#include "exact/usable_edges.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "io_occt/part_tree.h"
+#include "occt/part_tree.h"
 
 #include <opencascade/TopoDS_Iterator.hxx>
 
@@ -11,8 +11,8 @@ Affine affine(const gp_Trsf& map) {
   return {.columns = {column(1), column(2), column(3)}, .translation = column(4)};
 }
 
-const Colour* PlacedPart::colour_of(const TopoDS_Shape& entity, const CadFile& file) const {
-  for (const CadFile::Colours* const own : own_colours)
+const Colour* PlacedPart::colour_of(const TopoDS_Shape& entity, const DescribedShape& file) const {
+  for (const DescribedShape::Colours* const own : own_colours)
     if (const auto found = own->find(identity(entity)); found != own->end()) return &found->second;
   const auto found = file.colours.find(identity(entity));
   return found == file.colours.end() ? nullptr : &found->second;
@@ -52,7 +52,8 @@ bool PartTree::is_whole(const TopoDS_Shape& shape) {
 /// Adds what the file states of an instance to what it states of the wholes that hold it.
 void PartTree::enter(const TopoDS_Shape& in_parent, const TopLoc_Location& parent, PlacedPart& above) const {
   if (const std::string* const name = file_.instance_names.Seek(in_parent)) above.name = *name;
-  if (const CadFile::Colours* const own = file_.instance_colours.Seek(in_parent)) above.own_colours.push_back(own);
+  if (const DescribedShape::Colours* const own = file_.instance_colours.Seek(in_parent))
+    above.own_colours.push_back(own);
   if (const Affine* const move = file_.moves.Seek(in_parent))
     above.move = above.move * affine(parent.Transformation()) * *move * affine(parent.Inverted().Transformation());
 }

@@ -1,4 +1,4 @@
-#include "io_occt/shape_model.h"
+#include "occt/shape_model.h"
 
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Poly_Triangulation.hxx>
@@ -15,16 +15,20 @@
 #include <vector>
 
 #include "base/text.h"
-#include "io/exact/transposed.h"
-#include "io/exact/usable_edges.h"
-#include "io_occt/face_loops.h"
-#include "io_occt/face_surface.h"
-#include "io_occt/part_tree.h"
-#include "io_occt/shape_edges.h"
+#include "exact/transposed.h"
+#include "exact/usable_edges.h"
+#include "occt/face_loops.h"
+#include "occt/face_surface.h"
+#include "occt/part_tree.h"
+#include "occt/shape_edges.h"
 #include "tessera/topology.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+std::string in_file(const std::string& path, const std::string& sentence) {
+  return path.empty() ? sentence : path + ": " + sentence;
+}
 
 // A part of a file as a shape.
 
@@ -50,7 +54,7 @@ struct Wholes {
 /// Gathers the faces of one part.
 class PartShape {
  public:
-  PartShape(const CadFile& file, const TopoDS_Shape& part, const PlacedPart& placed, Shortcomings& shortcomings)
+  PartShape(const DescribedShape& file, const TopoDS_Shape& part, const PlacedPart& placed, Shortcomings& shortcomings)
       : file_(file), placed_(placed), edges_(part), shortcomings_(shortcomings) {}
 
   void add_all(const TopoDS_Shape& shape, Wholes wholes) {
@@ -162,7 +166,7 @@ class PartShape {
     return false;
   }
 
-  const CadFile& file_;
+  const DescribedShape& file_;
   const PlacedPart& placed_;
   ShapeEdges edges_;
   Shortcomings& shortcomings_;
@@ -172,7 +176,7 @@ class PartShape {
 
 /// Reads a part in its own space, wherever it is placed. Faces without a name are named after the whole that holds the
 /// part, if that has one. May throw Standard_Failure.
-Shape part_shape(const CadFile& file, const PlacedPart& placed, Shortcomings& shortcomings) {
+Shape part_shape(const DescribedShape& file, const PlacedPart& placed, Shortcomings& shortcomings) {
   const TopoDS_Shape part = placed.shape.Located(TopLoc_Location());
   PartShape faces(file, part, placed, shortcomings);
   faces.add_all(part, {placed.above, {}});
@@ -183,7 +187,7 @@ Shape part_shape(const CadFile& file, const PlacedPart& placed, Shortcomings& sh
 /// Gathers parts, their places, and warnings.
 class ModelOfParts {
  public:
-  ModelOfParts(const CadFile& file, const std::string& path) : file_(file), path_(path) {}
+  ModelOfParts(const DescribedShape& file, const std::string& path) : file_(file), path_(path) {}
 
   void add(const PlacedPart& placed) {
     const std::uint32_t shape = shape_of(placed);
@@ -237,33 +241,34 @@ class ModelOfParts {
     if (sentences.size() > most) warn(counted(sentences.size() - most, "message") + " more of this kind");
   }
 
-  void warn(const std::string& sentence) { model_.warnings.push_back(path_ + ": " + sentence); }
+  void warn(const std::string& sentence) { model_.warnings.push_back(in_file(path_, sentence)); }
 
   Status nothing() {
     const std::vector<std::string>& left_out = shortcomings_.left_out;
     const std::string& contents = file_.contents;
     if (left_out.empty())
       return Status(StatusCode::parse_error,
-                    path_ + ": it holds no surfaces" + (contents.empty() ? "" : " (" + contents + ")"));
+                    in_file(path_, "it holds no surfaces" + (contents.empty() ? "" : " (" + contents + ")")));
     const std::size_t more = left_out.size() - 1;
     const std::string others = more == 0 ? "" : " (and " + counted(more, "message") + " more)";
-    return Status(shortcomings_.first_code, path_ + ": no surface can be read: " + left_out[0] + others +
-                                                (contents.empty() ? "" : "; the file holds " + contents));
+    return Status(shortcomings_.first_code,
+                  in_file(path_, "no surface can be read: " + left_out[0] + others +
+                                     (contents.empty() ? "" : "; the file holds " + contents)));
   }
 
-  const CadFile& file_;
+  const DescribedShape& file_;
   const std::string& path_;
   Model model_;
   std::size_t surfaces_ = 0;  ///< of all instances so far
   /// By identity, orientation, the name that faces without one take, and the colours of this instance alone.
-  std::map<std::tuple<const void*, int, const std::string*, std::vector<const CadFile::Colours*>>, std::uint32_t>
+  std::map<std::tuple<const void*, int, const std::string*, std::vector<const DescribedShape::Colours*>>, std::uint32_t>
       shapes_;
   Shortcomings shortcomings_;
 };
 
 }  // namespace
 
-Result<Model> model_of(const CadFile& file, const std::string& path) {
+Result<Model> model_of(const DescribedShape& file, const std::string& path) {
   ModelOfParts parts(file, path);
   for (const PlacedPart& part : PartTree(file).parts()) parts.add(part);
   return parts.finish();

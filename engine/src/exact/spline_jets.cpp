@@ -1,4 +1,4 @@
-#include "io/exact/spline_jets.h"
+#include "exact/spline_jets.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "io_occt/face_surface.h"
+#include "occt/face_surface.h"
 
 #include <opencascade/GeomAdaptor_Surface.hxx>
 #include <opencascade/GeomConvert_ApproxSurface.hxx>
@@ -18,7 +18,7 @@
 #include <cmath>
 #include <vector>
 
-#include "io_occt/spline_line.h"
+#include "occt/spline_line.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

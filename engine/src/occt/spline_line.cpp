@@ -1,4 +1,4 @@
-#include "io_occt/spline_line.h"
+#include "occt/spline_line.h"
 
 #include <opencascade/GeomAdaptor_Curve.hxx>
 #include <opencascade/GeomConvert_ApproxCurve.hxx>

@@ -1,4 +1,4 @@
-#include "io/exact/arcs.h"
+#include "exact/arcs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <opencascade/Geom2d_Curve.hxx>
 #include <vector>
 
-#include "io_occt/face_surface.h"
+#include "occt/face_surface.h"
 #include "tessera/curve.h"
 #include "tessera/status.h"
 

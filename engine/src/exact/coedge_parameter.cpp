@@ -1,4 +1,4 @@
-#include "io/exact/coedge_parameter.h"
+#include "exact/coedge_parameter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "io/exact/swept_surface.h"
+#include "exact/swept_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "io_occt/face_loops.h"
+#include "occt/face_loops.h"
 
 #include <opencascade/BRepTools.hxx>
 #include <opencascade/BRepTools_WireExplorer.hxx>
@@ -21,7 +21,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io_occt/trim_curve.h"
+#include "occt/trim_curve.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

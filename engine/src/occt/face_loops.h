@@ -4,9 +4,9 @@
 #include <opencascade/TopoDS_Face.hxx>
 #include <vector>
 
-#include "io/exact/face_box.h"
-#include "io_occt/face_surface.h"
-#include "io_occt/shape_edges.h"
+#include "exact/face_box.h"
+#include "occt/face_surface.h"
+#include "occt/shape_edges.h"
 #include "tessera/geometry.h"
 #include "tessera/model.h"
 #include "tessera/status.h"

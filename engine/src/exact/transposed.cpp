@@ -1,4 +1,4 @@
-#include "io/exact/transposed.h"
+#include "exact/transposed.h"
 
 #include <utility>
 

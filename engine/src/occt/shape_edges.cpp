@@ -1,4 +1,4 @@
-#include "io_occt/shape_edges.h"
+#include "occt/shape_edges.h"
 
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Geom_Curve.hxx>
@@ -11,8 +11,8 @@
 #include <cmath>
 #include <utility>
 
-#include "io/exact/coedge_parameter.h"
-#include "io_occt/spline_line.h"
+#include "exact/coedge_parameter.h"
+#include "occt/spline_line.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "io/exact/arcs.h"
-#include "io/exact/spline_line.h"
+#include "exact/arcs.h"
+#include "exact/spline_line.h"
 #include "tessera/geometry.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/status.h"

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "io/exact/arcs.h"
-#include "io_occt/trim_curve.h"
+#include "exact/arcs.h"
+#include "occt/trim_curve.h"
 #include "tessera/model.h"
 
 namespace tessera { inline namespace abi_0_1 {

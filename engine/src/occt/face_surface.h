@@ -3,7 +3,7 @@
 
 #include <opencascade/Geom_Surface.hxx>
 
-#include "io/exact/swept_surface.h"
+#include "exact/swept_surface.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 

@@ -1,4 +1,4 @@
-#include "io/exact/spline_line.h"
+#include "exact/spline_line.h"
 
 #include <algorithm>
 #include <cmath>

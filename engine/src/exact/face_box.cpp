@@ -1,4 +1,4 @@
-#include "io/exact/face_box.h"
+#include "exact/face_box.h"
 
 #include <algorithm>
 #include <cmath>

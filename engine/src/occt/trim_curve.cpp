@@ -1,4 +1,4 @@
-#include "io_occt/trim_curve.h"
+#include "occt/trim_curve.h"
 
 #include <opencascade/Geom2dConvert.hxx>
 #include <opencascade/Geom2d_BSplineCurve.hxx>

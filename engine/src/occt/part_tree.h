@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "io_occt/cad_file.h"
+#include "occt/described_shape.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -21,11 +21,12 @@ struct PlacedPart {
   const std::string* above = nullptr;  ///< name of the nearest whole that has one and holds the part; null: none
   std::optional<Colour> colour;        ///< of the nearest whole that has one and holds the part
   std::string name;                    ///< of this instance; may be empty
-  std::vector<const CadFile::Colours*> own_colours;  ///< of entities within this instance alone, the first ones first
-  Affine move;                                       ///< after the location: scales and mirrors of mapped items
+  std::vector<const DescribedShape::Colours*>
+      own_colours;  ///< of entities within this instance alone, the first ones first
+  Affine move;      ///< after the location: scales and mirrors of mapped items
 
   /// The colour that the file states for an entity, at this instance or else everywhere; null if there is none.
-  const Colour* colour_of(const TopoDS_Shape& entity, const CadFile& file) const;
+  const Colour* colour_of(const TopoDS_Shape& entity, const DescribedShape& file) const;
 };
 
 /// Lists the parts of a file in their order. A part is as much of the file as stands together at each of its places:
@@ -34,7 +35,7 @@ struct PlacedPart {
 /// So no two parts share edges, except solids that a compound of products holds directly.
 class PartTree {
  public:
-  explicit PartTree(const CadFile& file) : file_(file) {}
+  explicit PartTree(const DescribedShape& file) : file_(file) {}
   std::vector<PlacedPart> parts();
 
  private:
@@ -44,7 +45,7 @@ class PartTree {
   void add_parts(const TopoDS_Shape& shape, const TopoDS_Shape& in_parent, const TopLoc_Location& parent,
                  PlacedPart above);
 
-  const CadFile& file_;
+  const DescribedShape& file_;
   TopTools_MapOfShape seen_;
   std::unordered_map<const void*, int> places_;  ///< of each shape, the number of its locations in the file
   std::unordered_map<const void*, bool> whole_;  ///< answers of is_whole()

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "io/exact/spline_jets.h"
-#include "io/exact/spline_line.h"
+#include "exact/spline_jets.h"
+#include "exact/spline_line.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 

@@ -6,7 +6,7 @@
 #include <opencascade/gp_XYZ.hxx>
 #include <vector>
 
-#include "io/exact/spline_line.h"
+#include "exact/spline_line.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"

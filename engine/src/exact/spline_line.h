@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "io/exact/arcs.h"
+#include "exact/arcs.h"
 #include "tessera/curve.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
