@@ -82,7 +82,8 @@ std::size_t triangles_of(const TopoDS_Shape& shape) {
 /// Returns whether no closed solid has an open edge.
 bool report(const std::filesystem::path& file) {
   const Result<DescribedShape> read = test::load_cad(file);
-  const Result<Model> model = read ? model_of(*read, file) : Result<Model>(read.status());
+  const Result<OcctModel> made = read ? model_of(*read, file) : Result<OcctModel>(read.status());
+  const Result<Model> model = made ? Result<Model>(made->model) : made.status();
   if (!model || model->shapes.empty()) {
     std::printf("%s: %s\n", file.filename().c_str(), model ? "no shapes" : model.status().message().c_str());
     return true;

@@ -80,7 +80,7 @@ TrimmedCase read_case(const std::filesystem::path& file, bool expands) {
   one.distinct_faces = distinct.size();
   if (expands && distinct.size() < faces.size()) cad.shape = expanded(cad.shape);
   one.shape = cad.shape;
-  one.model = value_or_throw(model_of(cad, one.name));
+  one.model = value_or_throw(model_of(cad, one.name)).model;
   faces.clear();
   collect(one.shape, TopAbs_FACE, faces);
   for (const TopoDS_Shape& shape : faces) {

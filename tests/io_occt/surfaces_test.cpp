@@ -366,7 +366,8 @@ TEST(ReadCad, IsWhatThisProcessMakesOfTheFile) {
     const Result<Model> read = read_by_opencascade(path);
     if (read.status().code() == StatusCode::internal) continue;  // OpenCASCADE crashes, and would end this process
     const Result<DescribedShape> file = load_cad(path.string());
-    const Result<Model> here = file ? model_of(*file, path.string()) : Result<Model>(file.status());
+    const Result<OcctModel> made = file ? model_of(*file, path.string()) : Result<OcctModel>(file.status());
+    const Result<Model> here = made ? Result<Model>(made->model) : made.status();
     ASSERT_EQ(here.ok(), read.ok());
     EXPECT_EQ(here.status().message(), read.status().message());
     if (!read) continue;

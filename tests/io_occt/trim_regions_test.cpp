@@ -70,7 +70,9 @@ void trim_regions_compare(const TopoDS_Face& given, int count, std::mt19937_64& 
   const Result<FaceBox> box = face_box(face);
   TopLoc_Location ignored;
   const Result<FaceSurface> made = box ? face_surface(BRep_Tool::Surface(face, ignored), box->domain) : box.status();
-  const Result<FaceLoops> all = made ? face_loops(face, *box, made->parameters, ShapeEdges(face)) : made.status();
+  const Result<ShapeEdges> edges = ShapeEdges::make(face, {});
+  ASSERT_TRUE(edges.ok()) << where;
+  const Result<FaceLoops> all = made ? face_loops(face, *box, made->parameters, *edges) : made.status();
   if (!all) {
     ++counts.unread;
     return;

@@ -9,7 +9,9 @@
 
 #include "io/file/memory_file.h"
 #include "io_occt/cad_file.h"
+#include "occt/guarded_calls.h"
 #include "occt/shape_model.h"
+#include "parallel/caller_arena.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 
@@ -63,16 +65,29 @@ Status renamed(const Status& status, const std::string& copy, const std::string&
   return Status(status.code(), path + status.message().substr(copy.size()), status.index());
 }
 
+Status out_of_memory(const std::string& path) {
+  return Status(StatusCode::out_of_memory, path + ": OpenCASCADE exceeded its memory limit");
+}
+
+/// The model, made by this thread alone: the limit of the program's memory holds for any number of cores.
+Result<Model> model_of_file(const DescribedShape& file, const std::string& path) {
+  Result<OcctModel> made = Status(StatusCode::internal, {});
+  in_own_arena(1, [&] { made = guarded_occt([&] { return model_of(file, path); }); });
+  if (made) return std::move(made->model);
+  if (made.status().code() == StatusCode::out_of_memory) return out_of_memory(path);
+  return made.status();
+}
+
 Result<Model> load(const Loader& loader, const std::string& path) {
   try {
     const Result<MarklessFile> plain = MarklessFile::make(path);
     if (!plain) return plain.status();
     const Result<DescribedShape> file = loader.load(plain->path());
-    return file ? model_of(*file, path) : Result<Model>(renamed(file.status(), plain->path(), path));
+    return file ? model_of_file(*file, path) : Result<Model>(renamed(file.status(), plain->path(), path));
   } catch (const Standard_OutOfMemory&) {
-    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE exceeded its memory limit");
+    return out_of_memory(path);
   } catch (const std::bad_alloc&) {
-    return Status(StatusCode::out_of_memory, path + ": OpenCASCADE exceeded its memory limit");
+    return out_of_memory(path);
   } catch (const Standard_Failure& failure) {
     return Status(StatusCode::parse_error,
                   path + ": OpenCASCADE: " + failure.DynamicType()->Name() + ": " + failure.GetMessageString());

@@ -16,8 +16,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <vector>
 
+#include "occt/guarded_calls.h"
 #include "occt/spline_line.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -102,6 +104,7 @@ double deviation(const Geom_Surface& a, const Geom_Surface& b, const Domain& box
 Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& box) {
   Box3 points;
   for (int k = 0; k < 25; ++k) points.extend(vec3(surface->Value(box.u_at(k % 5 / 4.0), box.v_at(k / 5 / 4.0)).XYZ()));
+  const std::lock_guard lock(approximation_mutex());
   const handle<Geom_Surface> part = new Geom_RectangularTrimmedSurface(surface, box.u0, box.u1, box.v0, box.v1);
   const GeomConvert_ApproxSurface fit(part, 1e-6 * points.diagonal(), GeomAbs_C0, GeomAbs_C0, 9, 9, 100, 1);
   if (!fit.HasResult())

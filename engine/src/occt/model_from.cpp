@@ -1,7 +1,5 @@
 #include <opencascade/TopExp_Explorer.hxx>
 
-#include <utility>
-
 #include "occt/guarded_calls.h"
 #include "occt/shape_model.h"
 #include "tessera/occt.h"
@@ -13,12 +11,9 @@ Result<OcctModel> model_from(const TopoDS_Shape& shape, const Execution& executi
     if (shape.IsNull()) return Status(StatusCode::invalid_argument, "the shape is null");
     if (!TopExp_Explorer(shape, TopAbs_FACE).More())
       return Status(StatusCode::invalid_argument, "the shape has no faces");
-    if (execution.cancel && execution.cancel->load()) return Status(StatusCode::cancelled, "cancelled");
     DescribedShape described;
     described.shape = shape;
-    Result<Model> model = model_of(described, {});
-    if (!model) return model.status();
-    return OcctModel{*std::move(model)};
+    return model_of(described, {}, execution);
   });
 }
 

@@ -1,5 +1,6 @@
 #include "occt/part_tree.h"
 
+#include <opencascade/Standard_Version.hxx>
 #include <opencascade/TopoDS_Iterator.hxx>
 
 #include <utility>
@@ -9,6 +10,15 @@ namespace tessera { inline namespace abi_0_1 {
 Affine affine(const gp_Trsf& map) {
   const auto column = [&](int k) { return Vec3{map.Value(1, k), map.Value(2, k), map.Value(3, k)}; };
   return {.columns = {column(1), column(2), column(3)}, .translation = column(4)};
+}
+
+TopoDS_Shape moved(TopoDS_Shape shape, const TopLoc_Location& location) {
+#if OCC_VERSION_HEX >= 0x070600
+  shape.Location(location * shape.Location(), false);
+#else
+  shape.Location(location * shape.Location());
+#endif
+  return shape;
 }
 
 const Colour* PlacedPart::colour_of(const TopoDS_Shape& entity, const DescribedShape& file) const {

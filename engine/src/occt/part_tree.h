@@ -14,6 +14,8 @@
 namespace tessera { inline namespace abi_0_1 {
 
 Affine affine(const gp_Trsf& map);
+/// A shape moved by a location, which may scale or mirror: OpenCASCADE's own call would throw.
+TopoDS_Shape moved(TopoDS_Shape shape, const TopLoc_Location& location);
 
 /// A part at its place. A part that a move mirrors is reversed, so that its normals keep their side.
 struct PlacedPart {

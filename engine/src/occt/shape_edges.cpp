@@ -12,6 +12,8 @@
 #include <utility>
 
 #include "exact/coedge_parameter.h"
+#include "occt/guarded_calls.h"
+#include "occt/occt_parameter.h"
 #include "occt/spline_line.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -25,15 +27,24 @@ bool is_range(const Interval& range) { return range.from < range.to && std::isfi
 
 }  // namespace
 
-ShapeEdges::ShapeEdges(const TopoDS_Shape& shape) {
+Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& execution) {
+  ShapeEdges out;
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
-    TopExp::MapShapes(face.Current(), TopAbs_EDGE, edge_map_);
-  for (int k = 1; k <= edge_map_.Extent(); ++k) TopExp::MapShapes(edge_map_(k), TopAbs_VERTEX, vertex_map_);
-  for (int k = 1; k <= vertex_map_.Extent(); ++k) {
-    const TopoDS_Vertex vertex = TopoDS::Vertex(vertex_map_(k));
-    vertices_.push_back({vec3(BRep_Tool::Pnt(vertex).XYZ()), length_or_zero(BRep_Tool::Tolerance(vertex))});
+    TopExp::MapShapes(face.Current(), TopAbs_EDGE, out.edge_map_);
+  for (int k = 1; k <= out.edge_map_.Extent(); ++k) TopExp::MapShapes(out.edge_map_(k), TopAbs_VERTEX, out.vertex_map_);
+  for (int k = 1; k <= out.vertex_map_.Extent(); ++k) {
+    const TopoDS_Vertex vertex = TopoDS::Vertex(out.vertex_map_(k));
+    out.vertices_.push_back({vec3(BRep_Tool::Pnt(vertex).XYZ()), length_or_zero(BRep_Tool::Tolerance(vertex))});
   }
-  for (int k = 1; k <= edge_map_.Extent(); ++k) add_edge(TopoDS::Edge(edge_map_(k)));
+  const auto count = static_cast<std::size_t>(out.edge_map_.Extent());
+  out.edges_.resize(count);
+  out.parameters_.resize(count);
+  const Status status = each_on_threads(count, 16, execution, [&](std::size_t k) {
+    out.read_edge(k);
+    return Status();
+  });
+  if (!status.ok()) return status;
+  return out;
 }
 
 std::uint32_t ShapeEdges::vertex_id(const TopoDS_Shape& vertex) const {
@@ -42,10 +53,10 @@ std::uint32_t ShapeEdges::vertex_id(const TopoDS_Shape& vertex) const {
   return static_cast<std::uint32_t>(index - 1);
 }
 
-void ShapeEdges::add_edge(const TopoDS_Edge& given) {
-  const TopoDS_Edge edge = TopoDS::Edge(given.Oriented(TopAbs_FORWARD));
-  BrepEdge& out = edges_.emplace_back();
-  Parameter& parameter = parameters_.emplace_back();
+void ShapeEdges::read_edge(std::size_t k) {
+  const TopoDS_Edge edge = TopoDS::Edge(edge_map_(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD));
+  BrepEdge& out = edges_[k];
+  Parameter& parameter = parameters_[k];
   TopoDS_Vertex start, end;
   TopExp::Vertices(edge, start, end);
   out.start = vertex_id(start);
@@ -93,7 +104,12 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
   return out;
 }
 
-void ShapeEdges::give_to(Shape& shape) && {
+void ShapeEdges::give_to(Shape& shape, OcctShape& sources) && {
+  for (std::size_t k = 0; k < edges_.size(); ++k) {
+    const TopoDS_Shape edge = edge_map_(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD);
+    sources.edges.push_back({TopoDS::Edge(edge), occt_parameter(parameters_[k].arcs)});
+  }
+  for (int k = 1; k <= vertex_map_.Extent(); ++k) sources.vertices.push_back(TopoDS::Vertex(vertex_map_(k)));
   // An unusable vertex has no edges, see vertex_id().
   for (BrepVertex& vertex : vertices_)
     if (!is_finite(vertex.position)) vertex.position = {};

@@ -9,6 +9,7 @@
 #include "exact/arcs.h"
 #include "occt/trim_curve.h"
 #include "tessera/model.h"
+#include "tessera/occt.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -16,15 +17,16 @@ namespace tessera { inline namespace abi_0_1 {
 /// and location are.
 class ShapeEdges {
  public:
-  /// May throw Standard_Failure.
-  explicit ShapeEdges(const TopoDS_Shape& shape);
+  /// Reads the edges by all threads. Errors: cancelled, internal (an exception of OpenCASCADE). May throw
+  /// Standard_Failure.
+  static Result<ShapeEdges> make(const TopoDS_Shape& shape, const Execution& execution);
 
   /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`. Its edge is
   /// no_id if the curve does not run along the edge from end to end.
   Coedge coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs) const;
 
-  /// Moves vertices and edges into a shape of ours.
-  void give_to(Shape& shape) &&;
+  /// Moves vertices and edges into a shape of ours, and says what they are made of.
+  void give_to(Shape& shape, OcctShape& sources) &&;
 
  private:
   /// How the parameter of an edge follows from OpenCASCADE's.
@@ -32,7 +34,8 @@ class ShapeEdges {
     Interval theirs;
     std::optional<Arcs> arcs;  ///< empty: they are equal
   };
-  void add_edge(const TopoDS_Edge& edge);
+  ShapeEdges() = default;
+  void read_edge(std::size_t k);
   std::uint32_t vertex_id(const TopoDS_Shape& vertex) const;
 
   TopTools_IndexedMapOfShape edge_map_, vertex_map_;

@@ -11,6 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+
+#include "occt/guarded_calls.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -52,6 +55,7 @@ Result<SplineLine> fitted(const handle<Geom_Curve>& curve, const Interval& range
     length_bound += point.Distance(before);
     before = point;
   }
+  const std::lock_guard lock(approximation_mutex());
   const handle<Geom_Curve> part = new Geom_TrimmedCurve(curve, range.from, range.to);
   const GeomConvert_ApproxCurve fit(part, 1e-6 * length_bound, GeomAbs_C0, 200, 8);
   if (!fit.HasResult()) return Status(StatusCode::unsupported, "a curve that it is swept along cannot be fitted");

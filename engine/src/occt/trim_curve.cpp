@@ -5,16 +5,19 @@
 #include <opencascade/Geom2d_BezierCurve.hxx>
 #include <opencascade/Geom2d_Circle.hxx>
 #include <opencascade/Geom2d_Ellipse.hxx>
+#include <opencascade/Geom2d_OffsetCurve.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
 #include "base/text.h"
 #include "convert/fit/cubic_fit.h"
+#include "occt/guarded_calls.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -133,6 +136,8 @@ Result<PlaneSpline> plane_spline(const handle<Geom2d_Curve>& curve, const Interv
                                                text(whole->FirstParameter()) + " to " + text(whole->LastParameter()) +
                                                ", the edge's range is from " + text(range.from) + " to " +
                                                text(range.to));
+  std::unique_lock lock(approximation_mutex(), std::defer_lock);
+  if (whole->IsKind(STANDARD_TYPE(Geom2d_OffsetCurve))) lock.lock();
   const handle<Geom2d_TrimmedCurve> trimmed = new Geom2d_TrimmedCurve(whole, part.from, part.to);
   PlaneSpline out{Geom2dConvert::CurveToBSplineCurve(trimmed), {}};
   if (out.spline->IsPeriodic()) out.spline->SetNotPeriodic();
