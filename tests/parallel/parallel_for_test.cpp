@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cfenv>
+#include <chrono>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -36,6 +40,28 @@ TEST(ParallelFor, ExceptionsBecomeStatuses) {
     EXPECT_EQ(run([] { throw std::bad_alloc(); }).code(), StatusCode::out_of_memory);
     EXPECT_EQ(run([] { throw 1; }).code(), StatusCode::internal);
   }
+}
+
+// A caller that keeps floating-point exceptions from trapping keeps them so on all threads; TBB's own threads have the
+// settings of whoever used them first.
+TEST(ParallelFor, RunsWithTheCallersFloatingPointSettings) {
+  const auto directions = [] {
+    std::mutex mutex;
+    std::map<int, int> seen;
+    EXPECT_TRUE(parallel_for(2000, 1, {}, [&](std::size_t, std::size_t) {
+                  const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(20);
+                  while (std::chrono::steady_clock::now() < end) continue;
+                  const std::lock_guard lock(mutex);
+                  ++seen[std::fegetround()];
+                }).ok());
+    return seen;
+  };
+  EXPECT_EQ(directions(), (std::map<int, int>{{FE_TONEAREST, 2000}}));
+  std::fesetround(FE_UPWARD);
+  const std::map<int, int> upward = directions();
+  std::fesetround(FE_TONEAREST);
+  EXPECT_EQ(upward, (std::map<int, int>{{FE_UPWARD, 2000}}));
+  EXPECT_EQ(directions(), (std::map<int, int>{{FE_TONEAREST, 2000}}));
 }
 
 TEST(ParallelFor, StopsWhenCancelled) {

@@ -40,8 +40,10 @@ class Order {
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body) {
   Order order;
   order.call_begins();
-  // oneTBB would skip pieces without a word once a task group around this call is cancelled.
-  tbb::task_group_context context(tbb::task_group_context::isolated);
+  // oneTBB would skip pieces without a word once a task group around this call is cancelled. Its threads take the
+  // floating-point settings of this one.
+  using Context = tbb::task_group_context;
+  Context context(Context::isolated, Context::default_traits | Context::fp_settings);
   const auto run = [&](const tbb::blocked_range<std::size_t>& range) {
     order.piece_begins();
     for (std::size_t piece = range.begin(); piece != range.end(); ++piece) body(piece);
