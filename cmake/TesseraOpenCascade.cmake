@@ -1,9 +1,11 @@
 # Finds OpenCASCADE (7.5 or later; its own version file lets no other patch version pass) and sets
-# tessera_OpenCASCADE_FOUND, and tessera_OpenCASCADE_exchange_FOUND for its readers of files. What its package adds to the compile definitions of the folder is taken back: only the
-# targets are wanted.
+# tessera_OpenCASCADE_FOUND, and tessera_OpenCASCADE_exchange_FOUND if its readers of files are there too. What its package
+# adds to the compile definitions of the folder is taken back: only the targets are wanted.
 
 get_directory_property(_tessera_definitions COMPILE_DEFINITIONS)
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # for programs of the project that adds this one, which link tessera::occt
 find_package(OpenCASCADE QUIET)
+unset(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL)
 set_directory_properties(PROPERTIES COMPILE_DEFINITIONS "${_tessera_definitions}")
 unset(_tessera_definitions)
 

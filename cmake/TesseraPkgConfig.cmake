@@ -1,6 +1,6 @@
 # Writes one file per component for pkg-config: tessera.pc, tessera-ray.pc, tessera-io.pc, tessera-parts.pc, tessera-mpi.pc,
-# tessera-c.pc. Users of
-# a static library link its dependencies too, so its file lists them; a shared library links them itself.
+# tessera-occt.pc, tessera-c.pc. Users of a static library link its dependencies too, so its file lists them; a shared
+# library links them itself.
 
 # tessera_install_pkg_config(NAME TARGET DESCRIPTION [ON names...] [REQUIRES names...] [LIBS "-l..."] [CFLAGS "-D..."]):
 # REQUIRES and LIBS are what the library itself needs.

@@ -10,7 +10,7 @@ Lists and installs the missing Debian packages that Tessera is built with, by ap
 If nothing is missing, it does nothing and needs neither network nor rights.
 
   --for demo      the libraries and the command line
-  --for cad       the demo, and OpenCASCADE for IGES and BREP files
+  --for cad       the demo, and OpenCASCADE for IGES and BREP files and for programs of its own
   --for mpi       the demo, and Open MPI for models in parts on several machines
   --for python    the demo, OpenCASCADE, and what builds the package for Python
   --for package   these, and what makes Debian packages

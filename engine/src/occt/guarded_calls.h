@@ -47,8 +47,8 @@ auto guarded_occt(Body&& body) noexcept -> decltype(body()) {
   });
 }
 
-/// Calls body(k) for each k below `count`, by the threads of the caller's arena, `grain` of them in a piece. Returns the
-/// error of the first k that fails, by its Status or by an exception; others are called all the same. Errors: also
+/// Calls body(k) for each k below `count`, by the threads of the caller's arena, `grain` of them in a piece. Returns
+/// the error of the first k that fails, by its Status or by an exception; others are called all the same. Errors: also
 /// cancelled.
 Status each_on_threads(std::size_t count, std::size_t grain, const Execution& execution,
                        FunctionRef<Status(std::size_t)> body);
