@@ -88,7 +88,7 @@ TrimmedCase read_case(const std::filesystem::path& file, bool expands) {
     const TopoDS_Face face = TopoDS::Face(shape);
     TopLoc_Location place;
     const Handle(Geom_Surface) surface = BRep_Tool::Surface(face, place);
-    const Result<FaceBox> box = face_box(face);
+    const Result<FaceBox> box = face_box(face_border(face));
     if (!box) continue;
     const Result<FaceSurface> made = face_surface(surface, box->domain);
     if (!made) continue;

@@ -85,7 +85,7 @@ TEST(FaceSurface, AnalyticSurfacesAreExact) {
        {BRepPrimAPI_MakeCylinder(axes, 2, 5).Shape(), BRepPrimAPI_MakeCone(axes, 2, 0, 5).Shape(),
         BRepPrimAPI_MakeCone(axes, 0.5, 3, 2, 1.0).Shape(), BRepPrimAPI_MakeBox(axes, 1, 2, 3).Shape()}) {
     for (const TopoDS_Face& face : faces_of(solid)) {
-      const Result<FaceBox> box = face_box(face);
+      const Result<FaceBox> box = face_box(face_border(face));
       ASSERT_TRUE(box.ok()) << box.status().message();
       expect_exact(BRep_Tool::Surface(face), box->domain);
     }
@@ -200,7 +200,7 @@ TEST(FaceBox, EndsThatAreKnotsButForRoundingAreKnots) {
       const double period = turn * (u1 - u0);
       const Domain box{knots_u(2) + period + off, knots_u(6) + period - off, knots_v(2) - off, knots_v(4) + off};
       const TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, box.u0, box.u1, box.v0, box.v1, 1e-7);
-      const Result<FaceBox> found = face_box(face);
+      const Result<FaceBox> found = face_box(face_border(face));
       ASSERT_TRUE(found.ok()) << found.status().message();
       const Result<FaceSurface> ours = face_surface(surface, found->domain);
       ASSERT_TRUE(ours.ok()) << ours.status().message();
@@ -275,7 +275,7 @@ TEST(FaceSurface, RealFacesAreWhereOpenCascadeHasThem) {
     for (const TopoDS_Face& face : faces_of(file->shape)) {
       TopLoc_Location place;
       const handle<Geom_Surface> surface = BRep_Tool::Surface(face, place);
-      const Result<FaceBox> box = face_box(face);
+      const Result<FaceBox> box = face_box(face_border(face));
       ASSERT_TRUE(box.ok()) << path << box.status().message();
       const Result<FaceSurface> ours = face_surface(surface, box->domain);
       ASSERT_TRUE(ours.ok()) << path << ours.status().message();

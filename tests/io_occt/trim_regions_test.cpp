@@ -67,12 +67,13 @@ double distance_from(const std::vector<TrimLoop>& loops, const Domain& d, double
 void trim_regions_compare(const TopoDS_Face& given, int count, std::mt19937_64& random, TrimRegionsCounts& counts,
                           const std::string& where) {
   const TopoDS_Face face = TopoDS::Face(given.Oriented(TopAbs_FORWARD));
-  const Result<FaceBox> box = face_box(face);
+  const FaceBorder border = face_border(face);
+  const Result<FaceBox> box = face_box(border);
   TopLoc_Location ignored;
   const Result<FaceSurface> made = box ? face_surface(BRep_Tool::Surface(face, ignored), box->domain) : box.status();
   const Result<ShapeEdges> edges = ShapeEdges::make(face, {});
   ASSERT_TRUE(edges.ok()) << where;
-  const Result<FaceLoops> all = made ? face_loops(face, *box, made->parameters, *edges) : made.status();
+  const Result<FaceLoops> all = made ? face_loops(border, *box, made->parameters, *edges) : made.status();
   if (!all) {
     ++counts.unread;
     return;

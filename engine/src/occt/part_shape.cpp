@@ -87,12 +87,13 @@ Status PartShape::try_face(PartFace& part_face) const {
     return Status(StatusCode::unsupported,
                   "it has no surface" + (count == 0 ? "" : ", it is a mesh of " + counted(count, "triangle")));
   }
-  Result<FaceBox> box = face_box(face);
+  const FaceBorder border = face_border(face);
+  Result<FaceBox> box = face_box(border);
   if (!box) return box.status();
   const bool is_part = take_range(part_face, *box);
   Result<FaceSurface> made = face_surface(surface, box->domain);
   if (!made) return made.status();
-  Result<FaceLoops> loops = is_part ? FaceLoops{} : face_loops(face, *box, made->parameters, edges_);
+  Result<FaceLoops> loops = is_part ? FaceLoops{} : face_loops(border, *box, made->parameters, edges_);
   if (!loops) {
     part_face.whole.push_back(part_face.words +
                               " is taken as untrimmed, its loops cannot be read: " + loops.status().message());
