@@ -5,6 +5,7 @@
 #include <opencascade/Geom2d_BezierCurve.hxx>
 #include <opencascade/Geom2d_Circle.hxx>
 #include <opencascade/Geom2d_Ellipse.hxx>
+#include <opencascade/Geom2d_Line.hxx>
 #include <opencascade/Geom2d_OffsetCurve.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
 
@@ -40,11 +41,12 @@ Result<Curve> mapped_poles(const Geom2d_BSplineCurve& spline, const Reparametriz
                          : Curve::nurbs(spline.Degree(), points, weights, knots);
 }
 
-bool is_straight_along_a_parameter(const Geom2d_BSplineCurve& spline) {
-  if (spline.Degree() != 1 || spline.NbPoles() != 2) return false;
-  const gp_Pnt2d a = spline.Pole(1), b = spline.Pole(2);
+bool is_straight_along_a_parameter(const gp_Pnt2d& a, const gp_Pnt2d& b) {
   const double du = std::abs(b.X() - a.X()), dv = std::abs(b.Y() - a.Y());
   return std::min(du, dv) <= 1e-12 * std::max(du, dv);
+}
+bool is_straight_along_a_parameter(const Geom2d_BSplineCurve& spline) {
+  return spline.Degree() == 1 && spline.NbPoles() == 2 && is_straight_along_a_parameter(spline.Pole(1), spline.Pole(2));
 }
 
 /// One knot interval of the spline, in our parameters.
@@ -151,8 +153,7 @@ struct ArcsOfLine {
   const Arcs* arcs = nullptr;  ///< null: none
   double from = 0, to = 0;     ///< OpenCASCADE's parameters of the surface at its ends
 };
-ArcsOfLine arcs_of_line(const Geom2d_BSplineCurve& line, const Reparametrization& parameters) {
-  const gp_Pnt2d a = line.Pole(1), b = line.Pole(2);
+ArcsOfLine arcs_of_line(const gp_Pnt2d& a, const gp_Pnt2d& b, const Reparametrization& parameters) {
   const bool along_u = std::abs(b.X() - a.X()) > std::abs(b.Y() - a.Y());
   const std::optional<Arcs>& arcs = along_u ? parameters.u : parameters.v;
   return {arcs ? &*arcs : nullptr, along_u ? a.X() : a.Y(), along_u ? b.X() : b.Y()};
@@ -169,11 +170,11 @@ std::vector<double> places_of_knots(const ArcsOfLine& line) {
   return places;
 }
 
-/// Describes a spline that is straight along a parameter: at x from 0 to 1 of the line, the mapped line is at the
-/// parameter of its arcs.
-void follow_line(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters, const Interval& range,
+/// Describes a line from a to b along a parameter: at x from 0 to 1 of the line, the mapped line is at the parameter of
+/// its arcs.
+void follow_line(const gp_Pnt2d& a, const gp_Pnt2d& b, const Reparametrization& parameters, const Interval& range,
                  TrimCurve& out) {
-  const ArcsOfLine line = arcs_of_line(spline, parameters);
+  const ArcsOfLine line = arcs_of_line(a, b, parameters);
   if (!line.arcs) return;
   const Interval d = out.curve.domain();
   const double start = line.arcs->parameter(line.from), end = line.arcs->parameter(line.to);
@@ -190,6 +191,23 @@ void follow_line(const Geom2d_BSplineCurve& spline, const Reparametrization& par
   std::sort(out.breaks.begin(), out.breaks.end());
 }
 
+/// A line that stays one in our parameters, without the detour over OpenCASCADE's splines: most edges are lines.
+Result<TrimCurve> mapped_line(const gp_Pnt2d& a, const gp_Pnt2d& b, const Interval& range, bool reversed,
+                              const Reparametrization& parameters) {
+  const std::array<double, 2> start = parameters(a.X(), a.Y()), end = parameters(b.X(), b.Y());
+  const std::array points{Vec3{start[0], start[1], 0}, Vec3{end[0], end[1], 0}};
+  const std::array knots{range.from, range.from, range.to, range.to};
+  Result<Curve> made = Curve::b_spline(1, points, knots);
+  if (!made) return made.status();
+  TrimCurve out{*std::move(made), {}, {}};
+  out.parameter = [range, reversed](double t) {
+    const double within = std::clamp(t, range.from, range.to);
+    return reversed ? range.from + range.to - within : within;
+  };
+  if (is_straight_along_a_parameter(a, b)) follow_line(a, b, parameters, range, out);
+  return out;
+}
+
 }  // namespace
 
 handle<Geom2d_Curve> bare_curve(handle<Geom2d_Curve> curve) {
@@ -199,6 +217,13 @@ handle<Geom2d_Curve> bare_curve(handle<Geom2d_Curve> curve) {
 
 Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
                              const Reparametrization& parameters, double tolerance) {
+  const auto line = handle<Geom2d_Line>::DownCast(bare_curve(curve));
+  if (!line.IsNull() && range.from < range.to) {
+    gp_Pnt2d a = line->Value(range.from), b = line->Value(range.to);
+    if (reversed) std::swap(a, b);
+    if (parameters.is_identity() || is_straight_along_a_parameter(a, b))
+      return mapped_line(a, b, range, reversed, parameters);
+  }
   const Result<PlaneSpline> found = plane_spline(curve, range);
   if (!found) return found.status();
   const PlaneSpline& plane = *found;
@@ -214,7 +239,7 @@ Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& 
   out.parameter = [plane, reversed, ends](double t) {
     return reversed ? ends - plane.parameter(t) : plane.parameter(t);
   };
-  if (straight) follow_line(*spline, parameters, range, out);
+  if (straight) follow_line(spline->Pole(1), spline->Pole(2), parameters, range, out);
   return out;
 }
 
