@@ -2,11 +2,16 @@
 
 #include <opencascade/BRepTools.hxx>
 #include <opencascade/BRepTools_WireExplorer.hxx>
+#include <opencascade/BRep_CurveRepresentation.hxx>
+#include <opencascade/BRep_ListIteratorOfListOfCurveRepresentation.hxx>
+#include <opencascade/BRep_TEdge.hxx>
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/BndLib_Add2dCurve.hxx>
 #include <opencascade/Geom2dConvert.hxx>
 #include <opencascade/Geom2d_BSplineCurve.hxx>
+#include <opencascade/Geom2d_Line.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
+#include <opencascade/Geom_Line.hxx>
 #include <opencascade/Geom_Plane.hxx>
 #include <opencascade/Precision.hxx>
 #include <opencascade/TopoDS.hxx>
@@ -16,6 +21,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "occt/trim_curve.h"
@@ -62,14 +68,44 @@ bool take_stored_order(std::vector<TopoDS_Edge>& edges, const std::vector<EdgeEn
   return along || against;
 }
 
+/// Whether the edge states a curve in the parameters of the surface at its place.
+bool has_curve(const TopoDS_Edge& edge, const handle<Geom_Surface>& surface, const TopLoc_Location& place) {
+  const TopLoc_Location location = place.Predivided(edge.Location());
+  const auto* const shape = static_cast<const BRep_TEdge*>(edge.TShape().get());
+  for (BRep_ListIteratorOfListOfCurveRepresentation curve(shape->Curves()); curve.More(); curve.Next())
+    if (curve.Value()->IsCurveOnSurface(surface, location)) return true;
+  return false;
+}
+
+/// The line of a straight edge in a plane's parameters, as OpenCASCADE finds it by way of several curves. Null for
+/// other edges, and for those that are not parallel to the plane.
+handle<Geom2d_Curve> line_on_plane(const TopoDS_Edge& edge, const Geom_Plane& plane, const TopLoc_Location& place,
+                                   Interval& range) {
+  double from = 0, to = 0;
+  TopLoc_Location location;
+  const auto line = handle<Geom_Line>::DownCast(BRep_Tool::Curve(edge, location, from, to));
+  if (line.IsNull() || !location.Predivided(place).IsIdentity()) return {};
+  const gp_Ax3& axes = plane.Position();
+  const gp_Vec normal = axes.Direction();
+  gp_Vec along = line->Position().Direction();
+  along -= (along * normal) / (normal * normal) * normal;
+  if (std::abs(along.Magnitude() - 1) >= ::Precision::Confusion()) return {};
+  range = {from, to};
+  const gp_Pnt start = line->Position().Location();
+  const double height = gp_Vec(start, axes.Location()) * normal / (normal * normal);
+  const gp_Vec foot(axes.Location(), start.XYZ() + height * normal.XYZ()), x = axes.XDirection(), y = axes.YDirection();
+  const gp_Vec direction = gp_Dir(along);
+  return new Geom2d_Line(gp_Pnt2d(foot * x, foot * y), gp_Dir2d(direction * x, direction * y));
+}
+
 /// Reads the border of one face.
 class BorderReader {
  public:
   explicit BorderReader(const TopoDS_Face& face) {
     out_.face = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
     out_.tolerance = std::max(::Precision::Confusion(), BRep_Tool::Tolerance(out_.face));
-    TopLoc_Location place;
-    is_plane_ = BRep_Tool::Surface(out_.face, place)->DynamicType() == STANDARD_TYPE(Geom_Plane);
+    surface_ = BRep_Tool::Surface(out_.face, place_);
+    plane_ = handle<Geom_Plane>::DownCast(surface_);
   }
 
   FaceBorder read() {
@@ -139,6 +175,9 @@ class BorderReader {
 
   BorderEdge with_curve(const TopoDS_Edge& edge) const {
     BorderEdge out{edge, {}, {0, 0}};
+    if (!plane_.IsNull() && !has_curve(edge, surface_, place_))
+      out.curve = line_on_plane(edge, *plane_, place_, out.range);
+    if (!out.curve.IsNull()) return out;
     out.curve = BRep_Tool::CurveOnSurface(edge, out_.face, out.range.from, out.range.to);
     return out;
   }
@@ -150,7 +189,7 @@ class BorderReader {
     const handle<Geom2d_Curve> whole = bare_curve(edge.curve);
     if (!whole->IsPeriodic() || !whole->IsKind(STANDARD_TYPE(Geom2d_BSplineCurve)) || !(from < to)) {
       // AddUVBounds() would project the edge onto the plane again.
-      if (is_plane_) return BndLib_Add2dCurve::Add(edge.curve, from, to, 0, box);
+      if (!plane_.IsNull()) return BndLib_Add2dCurve::Add(edge.curve, from, to, 0, box);
       return BRepTools::AddUVBounds(out_.face, edge.edge, box);
     }
     const handle<Geom2d_BSplineCurve> part =
@@ -173,7 +212,9 @@ class BorderReader {
   }
 
   FaceBorder out_;
-  bool is_plane_ = false;
+  handle<Geom_Surface> surface_;
+  handle<Geom_Plane> plane_;  ///< the surface, if it is one
+  TopLoc_Location place_;     ///< of the surface
 };
 
 }  // namespace

@@ -29,7 +29,7 @@ Status each_on_threads(std::size_t count, std::size_t grain, const Execution& ex
   Status first;
   std::size_t first_place = std::numeric_limits<std::size_t>::max();
   const auto call = [&](std::size_t k) {
-    Status status = guarded_occt([&] { return body(k); });
+    Status status = caught_occt([&] { return body(k); });
     if (status.ok()) return;
     const std::lock_guard lock(mutex);
     if (k >= first_place) return;

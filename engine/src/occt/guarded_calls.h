@@ -36,15 +36,21 @@ Status status_of(const Standard_Failure& failure);
 
 /// Calls body() and returns its result, a Status or a Result; an exception, also one of OpenCASCADE, becomes a Status.
 template <class Body>
-auto guarded_occt(Body&& body) noexcept -> decltype(body()) {
+auto caught_occt(Body&& body) noexcept -> decltype(body()) {
   return guarded([&]() -> decltype(body()) {
-    const UntrappedArithmetic untrapped;
     try {
       return std::forward<Body>(body)();
     } catch (const Standard_Failure& failure) {
       return status_of(failure);
     }
   });
+}
+
+/// Calls body() so that nothing is thrown and nothing traps: the outermost layer of public calls.
+template <class Body>
+auto guarded_occt(Body&& body) noexcept -> decltype(body()) {
+  const UntrappedArithmetic untrapped;
+  return caught_occt(std::forward<Body>(body));
 }
 
 /// Calls body(k) for each k below `count`, by the threads of the caller's arena, `grain` of them in a piece. Returns

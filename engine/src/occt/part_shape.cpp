@@ -44,7 +44,7 @@ void PartShape::add_all(const TopoDS_Shape& shape, Wholes wholes, std::size_t fi
       PartFace& face = faces_.emplace_back();
       face.face = TopoDS::Face(shape);
       face.wholes = wholes;
-      face.words = words(face.face, wholes, first_face + faces_.size() - 1);
+      face.number = first_face + faces_.size() - 1;
       return;
     }
     case TopAbs_SOLID:
@@ -60,10 +60,12 @@ void PartShape::add_all(const TopoDS_Shape& shape, Wholes wholes, std::size_t fi
   for (TopoDS_Iterator child(shape); child.More(); child.Next()) add_all(child.Value(), wholes, first_face);
 }
 
-std::string PartShape::words(const TopoDS_Face& face, const Wholes& wholes, std::size_t number) const {
-  const auto label = file_->labels.find(identity(face));
+/// What messages call a face: "face #51 (nut)".
+std::string PartShape::words(const PartFace& face) const {
+  const auto label = file_->labels.find(identity(face.face));
   const bool labelled = label != file_->labels.end() && !label->second.empty();
-  return "face " + (labelled ? label->second : std::to_string(number)) + (wholes.name ? " (" + *wholes.name + ")" : "");
+  return "face " + (labelled ? label->second : std::to_string(face.number)) +
+         (face.wholes.name ? " (" + *face.wholes.name + ")" : "");
 }
 
 void PartShape::convert(std::size_t face) {
@@ -95,12 +97,12 @@ Status PartShape::try_face(PartFace& part_face) const {
   if (!made) return made.status();
   Result<FaceLoops> loops = is_part ? FaceLoops{} : face_loops(border, *box, made->parameters, edges_);
   if (!loops) {
-    part_face.whole.push_back(part_face.words +
+    part_face.whole.push_back(words(part_face) +
                               " is taken as untrimmed, its loops cannot be read: " + loops.status().message());
     loops = FaceLoops{};
   }
   if (loops->unshared)
-    part_face.whole.push_back(part_face.words +
+    part_face.whole.push_back(words(part_face) +
                               " is read without shared edges: a curve of its border ends before its edge");
   const bool is_turned = face.Orientation() == TopAbs_REVERSED;
   if (is_turned)
@@ -128,18 +130,19 @@ bool PartShape::take_range(PartFace& face, FaceBox& box) const {
     box.domain = part;
     return true;
   }
-  face.whole.push_back(face.words + " is taken as the whole surface, its range is u from " + text(stated.u0) + " to " +
+  face.whole.push_back(words(face) + " is taken as the whole surface, its range is u from " + text(stated.u0) + " to " +
                        text(stated.u1) + ", v from " + text(stated.v0) + " to " + text(stated.v1));
   return false;
 }
 
 void PartShape::finish(Shape& shape, OcctShape& sources, Shortcomings& shortcomings) && {
-  std::vector<std::string> words;  // of each face of the shape
-  for (PartFace& face : faces_) {
+  std::vector<std::size_t> kept;  // of each face of the shape, its place in the part
+  for (std::size_t k = 0; k < faces_.size(); ++k) {
+    PartFace& face = faces_[k];
     std::move(face.whole.begin(), face.whole.end(), std::back_inserter(shortcomings.whole));
     if (!face.status.ok()) {
       if (shortcomings.left_out.empty()) shortcomings.first_code = face.status.code();
-      shortcomings.left_out.push_back(face.words + " is left out: " + face.status.message());
+      shortcomings.left_out.push_back(words(face) + " is left out: " + face.status.message());
       shortcomings.faces_left_out.push_back(face.face);
       continue;
     }
@@ -149,11 +152,11 @@ void PartShape::finish(Shape& shape, OcctShape& sources, Shortcomings& shortcomi
       shape_.shells[face.wholes.shell].faces.push_back(static_cast<std::uint32_t>(shape_.faces.size()));
     shape_.faces.push_back(*std::move(face.made));
     sources.faces.push_back(std::move(face.source));
-    words.push_back(std::move(face.words));
+    kept.push_back(k);
   }
   std::move(edges_).give_to(shape_, sources);
   for (const UnusableEdges& one : drop_unusable_edges(shape_))
-    shortcomings.whole.push_back(words[one.face] + " is read without shared edges: " + one.reason);
+    shortcomings.whole.push_back(words(faces_[kept[one.face]]) + " is read without shared edges: " + one.reason);
   shape = std::move(shape_);
 }
 

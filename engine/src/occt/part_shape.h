@@ -53,8 +53,8 @@ class PartShape {
   struct PartFace {
     TopoDS_Face face;
     Wholes wholes;
-    std::string words;  ///< what messages call it: "face #51 (nut)"
-    Status status;      ///< why it is left out
+    std::size_t number = 0;  ///< what messages call it, if it has no label
+    Status status;           ///< why it is left out
     std::optional<ShapeFace> made;
     OcctFace source;
     std::vector<std::string> whole;  ///< Shortcomings::whole
@@ -64,7 +64,7 @@ class PartShape {
   PartShape(const DescribedShape& file, const PlacedPart& placed, ShapeEdges edges)
       : file_(&file), placed_(&placed), edges_(std::move(edges)) {}
   void add_all(const TopoDS_Shape& shape, Wholes wholes, std::size_t first_face);
-  std::string words(const TopoDS_Face& face, const Wholes& wholes, std::size_t number) const;
+  std::string words(const PartFace& face) const;
   Status try_face(PartFace& face) const;
   bool take_range(PartFace& face, FaceBox& box) const;
 
