@@ -30,13 +30,14 @@ bool is_range(const Interval& range) { return range.from < range.to && std::isfi
 Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& execution) {
   ShapeEdges out;
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
-    TopExp::MapShapes(face.Current(), TopAbs_EDGE, out.edge_map_);
-  for (int k = 1; k <= out.edge_map_.Extent(); ++k) TopExp::MapShapes(out.edge_map_(k), TopAbs_VERTEX, out.vertex_map_);
-  for (int k = 1; k <= out.vertex_map_.Extent(); ++k) {
-    const TopoDS_Vertex vertex = TopoDS::Vertex(out.vertex_map_(k));
+    TopExp::MapShapes(face.Current(), TopAbs_EDGE, out.maps_->edges);
+  for (int k = 1; k <= out.maps_->edges.Extent(); ++k)
+    TopExp::MapShapes(out.maps_->edges(k), TopAbs_VERTEX, out.maps_->vertices);
+  for (int k = 1; k <= out.maps_->vertices.Extent(); ++k) {
+    const TopoDS_Vertex vertex = TopoDS::Vertex(out.maps_->vertices(k));
     out.vertices_.push_back({vec3(BRep_Tool::Pnt(vertex).XYZ()), length_or_zero(BRep_Tool::Tolerance(vertex))});
   }
-  const auto count = static_cast<std::size_t>(out.edge_map_.Extent());
+  const auto count = static_cast<std::size_t>(out.maps_->edges.Extent());
   out.edges_.resize(count);
   out.parameters_.resize(count);
   const Status status = each_on_threads(count, 16, execution, [&](std::size_t k) {
@@ -48,13 +49,13 @@ Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& 
 }
 
 std::uint32_t ShapeEdges::vertex_id(const TopoDS_Shape& vertex) const {
-  const int index = vertex.IsNull() ? 0 : vertex_map_.FindIndex(vertex);
+  const int index = vertex.IsNull() ? 0 : maps_->vertices.FindIndex(vertex);
   if (index == 0 || !is_finite(vertices_[static_cast<std::size_t>(index - 1)].position)) return no_id;
   return static_cast<std::uint32_t>(index - 1);
 }
 
 void ShapeEdges::read_edge(std::size_t k) {
-  const TopoDS_Edge edge = TopoDS::Edge(edge_map_(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD));
+  const TopoDS_Edge edge = TopoDS::Edge(maps_->edges(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD));
   BrepEdge& out = edges_[k];
   Parameter& parameter = parameters_[k];
   TopoDS_Vertex start, end;
@@ -81,12 +82,14 @@ void ShapeEdges::read_edge(std::size_t k) {
 
 Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs) const {
   Coedge out{no_id, edge.Orientation() == TopAbs_REVERSED, {}};
-  const int index = edge_map_.FindIndex(edge);
+  const int index = maps_->edges.FindIndex(edge);
   if (index == 0) return out;
   out.edge = static_cast<std::uint32_t>(index - 1);
   const Parameter& parameter = parameters_[out.edge];
   const Interval range = edges_[out.edge].range, whole = parameter.theirs;  // whole: ours if there is no range
   if (edges_[out.edge].degenerate || !is_range(theirs) || !is_range(whole)) return out;
+  if (trim.is_plain && !parameter.arcs && whole == theirs && range == theirs && trim.curve.domain() == theirs)
+    return out;
   // From the edge's parameter to OpenCASCADE's, to that of the face's curve, to ours.
   const double stretch = (theirs.to - theirs.from) / (whole.to - whole.from);
   const auto their = [&](double s) {
@@ -106,10 +109,10 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
 
 void ShapeEdges::give_to(Shape& shape, OcctShape& sources) && {
   for (std::size_t k = 0; k < edges_.size(); ++k) {
-    const TopoDS_Shape edge = edge_map_(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD);
+    const TopoDS_Shape edge = maps_->edges(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD);
     sources.edges.push_back({TopoDS::Edge(edge), occt_parameter(parameters_[k].arcs)});
   }
-  for (int k = 1; k <= vertex_map_.Extent(); ++k) sources.vertices.push_back(TopoDS::Vertex(vertex_map_(k)));
+  for (int k = 1; k <= maps_->vertices.Extent(); ++k) sources.vertices.push_back(TopoDS::Vertex(maps_->vertices(k)));
   // An unusable vertex has no edges, see vertex_id().
   for (BrepVertex& vertex : vertices_)
     if (!is_finite(vertex.position)) vertex.position = {};

@@ -1,6 +1,7 @@
 #pragma once
 // The vertices and edges of a shape, with ids.
 
+#include <memory>
 #include <opencascade/TopTools_IndexedMapOfShape.hxx>
 #include <opencascade/TopoDS_Edge.hxx>
 #include <optional>
@@ -38,7 +39,11 @@ class ShapeEdges {
   void read_edge(std::size_t k);
   std::uint32_t vertex_id(const TopoDS_Shape& vertex) const;
 
-  TopTools_IndexedMapOfShape edge_map_, vertex_map_;
+  /// Apart, because OpenCASCADE's maps are copied where others are moved.
+  struct Maps {
+    TopTools_IndexedMapOfShape edges, vertices;
+  };
+  std::unique_ptr<Maps> maps_ = std::make_unique<Maps>();
   std::vector<BrepVertex> vertices_;
   std::vector<BrepEdge> edges_;
   std::vector<Parameter> parameters_;

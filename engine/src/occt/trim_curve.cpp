@@ -199,7 +199,7 @@ Result<TrimCurve> mapped_line(const gp_Pnt2d& a, const gp_Pnt2d& b, const Interv
   const std::array knots{range.from, range.from, range.to, range.to};
   Result<Curve> made = Curve::b_spline(1, points, knots);
   if (!made) return made.status();
-  TrimCurve out{*std::move(made), {}, {}};
+  TrimCurve out{*std::move(made), {}, {}, parameters.is_identity()};
   out.parameter = [range, reversed](double t) {
     const double within = std::clamp(t, range.from, range.to);
     return reversed ? range.from + range.to - within : within;
@@ -234,7 +234,7 @@ Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& 
                                                             : refitted(*spline, parameters, tolerance);
   if (!made) return made.status();
   const double ends = spline->FirstParameter() + spline->LastParameter();
-  TrimCurve out{*std::move(made), {}, {}};
+  TrimCurve out{*std::move(made), {}, {}, false};
   if (plane.arcs) out.breaks = plane.arcs->knots();
   out.parameter = [plane, reversed, ends](double t) {
     return reversed ? ends - plane.parameter(t) : plane.parameter(t);

@@ -16,6 +16,7 @@ struct TrimCurve {
   Curve curve;
   std::function<double(double)> parameter;  ///< of OpenCASCADE's parameter; monotone
   std::vector<double> breaks;               ///< OpenCASCADE's parameters at which `parameter` is not smooth, in order
+  bool is_plain = false;                    ///< the parameters are equal; if reversed, their sum is that of the ends
 };
 
 /// The curve inside wrappers that change neither points nor parameters.
