@@ -182,7 +182,8 @@ class BorderReader {
     return out;
   }
 
-  /// Adds the rectangle that holds an edge's curve. OpenCASCADE's own misses what a periodic spline has behind its seam.
+  /// Adds the rectangle that holds an edge's curve. OpenCASCADE's own misses what a periodic spline has behind its
+  /// seam.
   void add_bounds(const BorderEdge& edge, Bnd_Box2d& box) const {
     if (edge.curve.IsNull()) return;
     const auto& [from, to] = edge.range;
