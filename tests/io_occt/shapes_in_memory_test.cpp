@@ -16,9 +16,11 @@
 
 namespace tessera::test { namespace {
 
-/// The message or warning without the path that it begins with.
-std::string without_path(const std::string& text, const std::string& path) {
-  return text.starts_with(path + ": ") ? text.substr(path.size() + 2) : text;
+/// The message or warning without the path that it begins with, and without the unit of BREP, which has none.
+std::string without_path(std::string text, const std::string& path) {
+  if (text.starts_with(path + ": ")) text.erase(0, path.size() + 2);
+  if (text.ends_with(" mm")) text.erase(text.size() - 3);
+  return text;
 }
 
 /// Expects the model of a BREP file of the shape to be the one of the shape that OpenCASCADE reads in it, bit for bit.

@@ -93,6 +93,14 @@ TEST(BadShapes, NumbersThatAreNoneAreRefused) {
   }
 }
 
+// Forty levels of compounds that hold the same one twice have more boxes than any memory.
+TEST(BadShapes, PartsAtTooManyPlacesAreRefused) {
+  TopoDS_Shape shape = unit_box();
+  for (int level = 0; level < 40; ++level)
+    shape = compound_of({shape, shape.Moved(shift(1 << (level % 20), level, 0))});
+  expect_refused(model_from(shape), StatusCode::unsupported, -1, "counted at each of their places");
+}
+
 TEST(BadShapes, CancelledCallsSaySo) {
   const std::atomic<bool> cancel{true};
   expect_refused(model_from(drilled_box(), {.cancel = &cancel}), StatusCode::cancelled, -1, "");

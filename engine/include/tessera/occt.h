@@ -96,8 +96,9 @@ struct OcctModel {
 /// leave it.
 ///
 /// Errors: invalid_argument (the shape is null or has no faces), the first warning's reason (no face is left),
-/// cancelled, out_of_memory, internal (an exception of OpenCASCADE, with its type and message). Memory: about 100 bytes
-/// per face and per edge beside the model.
+/// unsupported (more than 4 million faces, shells, solids and compounds, counted at each of their places), cancelled,
+/// out_of_memory, internal (an exception of OpenCASCADE, with its type and message). Memory: about 100 bytes per face
+/// and per edge beside the model.
 Result<OcctModel> model_from(const TopoDS_Shape& shape, const Execution& execution = {});
 
 }}  // namespace tessera::abi_0_1

@@ -28,12 +28,29 @@ const Colour* PlacedPart::colour_of(const TopoDS_Shape& entity, const DescribedS
   return found == file.colours.end() ? nullptr : &found->second;
 }
 
-std::vector<PlacedPart> PartTree::parts() {
+Result<std::vector<PlacedPart>> PartTree::parts() {
   if (!file_.shape.IsNull()) {
+    if (placed_shapes(file_.shape) > max_placed)
+      return Status(StatusCode::unsupported,
+                    "it holds more than " + std::to_string(max_placed) +
+                        " faces, shells, solids and compounds, counted at each of their places");
     count_places(file_.shape);
     add_parts(file_.shape, file_.shape, {}, {});
   }
   return std::move(parts_);
+}
+
+/// How many shapes the shape has, down to faces and with itself, each counted as often as it is held; beyond the limit,
+/// any number above it.
+std::size_t PartTree::placed_shapes(const TopoDS_Shape& shape) {
+  if (shape.ShapeType() >= TopAbs_FACE) return 1;
+  const auto known = placed_.find(identity(shape));
+  if (known != placed_.end()) return known->second;
+  std::size_t count = 1;
+  for (TopoDS_Iterator child(shape, false, false); child.More() && count <= max_placed; child.Next())
+    count += placed_shapes(child.Value());
+  placed_[identity(shape)] = count;
+  return count;
 }
 
 void PartTree::count_places(const TopoDS_Shape& shape) {

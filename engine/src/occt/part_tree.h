@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "occt/described_shape.h"
+#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -38,9 +39,13 @@ struct PlacedPart {
 class PartTree {
  public:
   explicit PartTree(const DescribedShape& file) : file_(file) {}
-  std::vector<PlacedPart> parts();
+  /// Errors: unsupported (more than `max_placed` shapes, each counted at each of its places: compounds that hold the
+  /// same one twice, level over level, soon have more than any memory).
+  Result<std::vector<PlacedPart>> parts();
+  static constexpr std::size_t max_placed = std::size_t{1} << 22;
 
  private:
+  std::size_t placed_shapes(const TopoDS_Shape& shape);
   void count_places(const TopoDS_Shape& shape);
   bool is_whole(const TopoDS_Shape& shape);
   void enter(const TopoDS_Shape& in_parent, const TopLoc_Location& parent, PlacedPart& above) const;
@@ -48,6 +53,7 @@ class PartTree {
                  PlacedPart above);
 
   const DescribedShape& file_;
+  std::unordered_map<const void*, std::size_t> placed_;  ///< answers of placed_shapes()
   TopTools_MapOfShape seen_;
   std::unordered_map<const void*, int> places_;  ///< of each shape, the number of its locations in the file
   std::unordered_map<const void*, bool> whole_;  ///< answers of is_whole()

@@ -26,11 +26,14 @@ std::string in_file(const std::string& path, const std::string& sentence) {
 /// Gathers parts, their places, and warnings.
 class ModelOfParts {
  public:
-  ModelOfParts(const DescribedShape& file, const std::string& path)
-      : file_(file), path_(path), placed_(PartTree(file).parts()) {}
+  ModelOfParts(const DescribedShape& file, const std::string& path) : file_(file), path_(path) {}
 
-  /// Reads each part once, its faces by all threads. Errors: cancelled, internal (an exception of OpenCASCADE).
+  /// Reads each part once, its faces by all threads. Errors: unsupported (PartTree's), cancelled, internal (an exception
+  /// of OpenCASCADE).
   Status read(const Execution& execution) {
+    Result<std::vector<PlacedPart>> parts = PartTree(file_).parts();
+    if (!parts) return parts.status();
+    placed_ = *std::move(parts);
     const Execution quiet{.cancel = execution.cancel};
     for (const PlacedPart& placed : placed_)
       if (Status status = add(placed, quiet); !status.ok()) return status;
@@ -58,7 +61,9 @@ class ModelOfParts {
     warn_of(left_out_);
     warn_of(whole_);
     warn_of(file_.notes);
-    if (fitted_ > 0) warn(counted(fitted_, "surface") + " fitted by splines, to within " + text(worst_fit_) + " mm");
+    if (fitted_ > 0)
+      warn(counted(fitted_, "surface") + " fitted by splines, to within " + text(worst_fit_) +
+           (path_.empty() ? "" : " mm"));
     Result<std::vector<ModelSurface>> placed = placed_faces(model.shapes, model.instances);
     if (!placed) return placed.status();
     model.surfaces = *std::move(placed);
