@@ -28,8 +28,8 @@ class ModelOfParts {
  public:
   ModelOfParts(const DescribedShape& file, const std::string& path) : file_(file), path_(path) {}
 
-  /// Reads each part once, its faces by all threads. Errors: unsupported (PartTree's), cancelled, internal (an exception
-  /// of OpenCASCADE).
+  /// Reads each part once, its faces by all threads. Errors: those of PartTree; cancelled, internal (an exception of
+  /// OpenCASCADE).
   Status read(const Execution& execution) {
     Result<std::vector<PlacedPart>> parts = PartTree(file_).parts();
     if (!parts) return parts.status();
