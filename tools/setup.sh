@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|cad|mpi|python|package|test|neon|peers|gallery|docs]
+tools/setup.sh [--for demo|cad|mpi|python|package|test|neon|fuzz|peers|gallery|docs]
 
 Lists and installs the missing Debian packages that Tessera is built with, by apt-get, with sudo unless it runs as root.
 If nothing is missing, it does nothing and needs neither network nor rights.
@@ -17,6 +17,7 @@ If nothing is missing, it does nothing and needs neither network nor rights.
   --for test      what the package for Python needs, and the tests (the default)
   --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
                   test is skipped
+  --for fuzz      the tests, and clang with libFuzzer for tools/test.sh --fuzz
   --for peers     the demo, and the programs that Tessera is compared with
   --for gallery   the demo, and the programs that put pictures on a sheet
   --for docs      the demo, and Doxygen for the reference
@@ -38,6 +39,7 @@ package_packages=("${python_packages[@]}" dpkg-dev file)
 test_packages=("${python_packages[@]}" "${mpi_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev libtinygltf-dev mypy
   python3 python3-pytest python3-yaml universal-ctags valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
+fuzz_packages=(clang-19 libclang-rt-19-dev)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)
 gallery_packages=(imagemagick fonts-dejavu-core)
@@ -47,7 +49,7 @@ purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, cad, mpi, python, package, test, neon, peers, gallery or docs"
+      (($# >= 2)) || fail "--for wants a word after it: demo, cad, mpi, python, package, test, neon, fuzz, peers, gallery or docs"
       purpose=$2
       shift 2
       ;;
@@ -70,10 +72,11 @@ case $purpose in
   package) packages=("${demo_packages[@]}" "${package_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
   neon) packages=("${demo_packages[@]}" "${test_packages[@]}" "${neon_packages[@]}") ;;
+  fuzz) packages=("${demo_packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
   gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
   docs) packages=("${demo_packages[@]}" "${docs_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, cad, mpi, python, package, test, neon, peers, gallery and docs" ;;
+  *) fail "--for $purpose: no such purpose; there are demo, cad, mpi, python, package, test, neon, fuzz, peers, gallery and docs" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

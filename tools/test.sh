@@ -73,7 +73,7 @@ cd "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
 echo "test: the first build and all tests take about 40 minutes on two cores, and longer with sanitizers. Later builds compile only"
 echo "test: what changed. --help says how to build and run some of the tests."
-tools/setup.sh --for test
+if [[ $fuzz_seconds ]]; then tools/setup.sh --for fuzz; else tools/setup.sh --for test; fi
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
   export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}  # it caches nothing of precompiled headers otherwise

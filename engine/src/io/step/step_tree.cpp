@@ -27,8 +27,7 @@ struct Above {
 class StepTreeMaker {
  public:
   StepTreeMaker(const StepIndex& index, TextEncoding encoding)
-      : index_(index),
-        styles_(step_styles(index, out_.remarks)),
+      : styles_(step_styles(index, out_.remarks)),
         structure_(index, encoding, out_.remarks),
         wholes_(index, structure_, out_.remarks) {}
 
@@ -144,7 +143,6 @@ class StepTreeMaker {
       out_.remarks.add(counted(static_cast<std::size_t>(unread), "colour") + " of single contexts not read");
   }
 
-  const StepIndex& index_;
   StepTree out_;
   StepStyles styles_;
   StepStructure structure_;
