@@ -25,7 +25,7 @@ TEST(ClosedEdges, AreNotMadeOnceTheCallIsCancelled) {
   const std::vector<std::uint8_t> is_joined(4 * divisions.size(), 0);
   const auto close = [&](const std::atomic<bool>* cancel) {
     const auto chord = [](std::uint32_t) { return ChordBound(); };
-    return close_edges({impl, runs, divisions, {}, nullptr, is_joined, chord, 1, 1e-9, cancel});
+    return close_edges({impl, runs, divisions, {}, nullptr, is_joined, chord, 1, false, 1e-9, cancel});
   };
   std::atomic<bool> cancel = false;
   for (const Result<ClosedEdges>& made : {close(nullptr), close(&cancel)}) {

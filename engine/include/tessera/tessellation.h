@@ -35,6 +35,15 @@ struct SurfaceEdits {
   Affine placement = {};      ///< maps the control points into the set
 };
 
+/// A vertex of a mesh where the loop of a face runs along an edge of its shape.
+struct EdgeVertex {
+  std::uint32_t edge = 0;    ///< counted as in Tessellation::edge_gaps()
+  std::uint32_t use = 0;     ///< a number of the coedge, which grows with faces, loops and curves
+  std::uint32_t patch = 0;   ///< of the coedge's face
+  std::uint32_t vertex = 0;  ///< of the mesh
+  double s = 0;              ///< the edge's parameter there; the same for all faces along the edge
+};
+
 /// Sets the control points of a set's patches without a plan: converts those that the moved points act on, to the same
 /// bits as make_patch_set(). Plans, grids and scenes of the set follow as after PatchSet::set_control_points().
 ///
@@ -131,6 +140,13 @@ class Tessellation {
   /// Model::instances. About 0 where faces meet; of edges that max_gap leaves open, half of their faces' distance.
   /// Empty if no loop of the set names edges.
   std::span<const float> edge_gaps() const;
+  /// Returns the vertices along the edges of shapes, by edges, then uses, then growing s: each use of a closed edge has
+  /// vertices at the same parameters, whose positions are the same bits. Where patches of one face meet, each has a
+  /// vertex at that parameter, unless the mesh shares vertices. A degenerate edge has one vertex, at both ends.
+  ///
+  /// Empty unless Joining::edge_vertices is set. Edges that max_gap leaves open, or that loops leave in part, may have
+  /// fewer vertices in one face than in another. Errors: out_of_memory. Memory: 24 bytes per vertex, kept by the plan.
+  Result<std::vector<EdgeVertex>> edge_vertices() const;
   /// Returns how many borders were joined by welding and not by their bits, those that became points among them.
   std::size_t welded_borders() const;
   /// Returns how many edges of triangles lie on borders that are joined to no other. check() counts fewer where such

@@ -53,6 +53,7 @@ class Closer {
     if (Status status = resolve_inserted(); !status.ok()) return status;
     list_members();
     measure();
+    if (of_.lists_vertices) list_edge_vertices();
     return std::move(out_);
   }
 
@@ -308,6 +309,20 @@ class Closer {
       box.extend(at);
       if (box.diagonal() <= (1 + slack) * boxes[place].diagonal()) out_.places[place] = at;
     }
+  }
+
+  void list_edge_vertices() {
+    std::vector<EdgeVertex>& all = out_.edge_vertices;
+    for (const StationVertices::Station& station : met_.stations) {
+      for (std::uint32_t k = station.first; k < station.first + station.count; ++k) {
+        const auto [patch, own] = met_.vertices[k];
+        const bool is_inserted = (own & PatchVertex::inserted) != 0;
+        const std::uint32_t vertex = is_inserted ? resolved_[own ^ PatchVertex::inserted] : own;
+        if (vertex != no_id) all.push_back({station.edge, met_.uses[k], patch, vertex, station.s});
+      }
+    }
+    std::ranges::sort(all, {},
+                      [](const EdgeVertex& of) { return std::tuple(of.edge, of.use, of.s, of.patch, of.vertex); });
   }
 
   /// Counts the segments of edges on the boundary of the mesh. The boundary of triangles, modulo 2, stays that of their

@@ -20,6 +20,7 @@
 #include "base/function_ref.h"
 #include "tess/bounds/chord_bound.h"
 #include "tess/closing/patch_edit.h"
+#include "tessera/tessellation.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -39,6 +40,8 @@ struct ClosedEdges {
   double gap = 0;                            ///< the largest
   /// Cut patches whose triangles are divided, by growing place among the cuts: their bounds no longer hold.
   std::vector<std::uint32_t> edited_cuts;
+  /// If asked for: the vertices along edges, by edges, then uses, then parameters. Each `vertex` is one of its patch.
+  std::vector<EdgeVertex> edge_vertices;
   /// How many boundary edges of the mesh closing has removed.
   std::int64_t closed_segments = 0;
 };
@@ -53,6 +56,7 @@ struct DividedFaces {
   std::span<const std::uint8_t> is_joined;  ///< by 4 * patch + side: triangles of another patch have the border anyway
   FunctionRef<ChordBound(std::uint32_t patch)> chord;
   double max_gap;                   ///< edges with larger gaps stay open
+  bool lists_vertices;              ///< whether ClosedEdges::edge_vertices are listed
   double same_share;                ///< parameters within this share of an edge's range count as one
   const std::atomic<bool>* cancel;  ///< looked at for each edge and each patch, unless null
 };

@@ -112,8 +112,11 @@ class StationLister {
   void put(std::uint32_t id, const PatchEdges::Edge& edge, double same) {
     auto own = own_.begin();
     for (const auto& [from, to] : stations_) {
-      StationVertices::Station station{id, no_id, static_cast<std::uint32_t>(out_.vertices.size()), 0};
-      for (; own != own_.end() && own->s <= to; ++own) out_.vertices.push_back(own->vertex);
+      StationVertices::Station station{id, no_id, static_cast<std::uint32_t>(out_.vertices.size()), 0, from};
+      for (; own != own_.end() && own->s <= to; ++own) {
+        out_.vertices.push_back(own->vertex);
+        out_.uses.push_back(own->use);
+      }
       station.count = static_cast<std::uint32_t>(out_.vertices.size()) - station.first;
       if (edge.degenerate || (from == stations_.front().from && std::abs(from - edge.range.from) <= same))
         station.vertex = edge.start;

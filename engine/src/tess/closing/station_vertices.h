@@ -17,9 +17,11 @@ struct StationVertices {
     std::uint32_t edge = 0;
     std::uint32_t vertex = no_id;        ///< where the edge ends: below PatchEdges::vertex_count
     std::uint32_t first = 0, count = 0;  ///< of its vertices
+    double s = 0;                        ///< the edge's parameter
   };
   std::vector<Station> stations;      ///< by edges and growing parameters
   std::vector<PatchVertex> vertices;  ///< of one station after the other
+  std::vector<std::uint32_t> uses;    ///< by vertex: see EdgeRun
   /// By edge: how many segments of boundaries lie on it that no other patch has triangles on without this.
   std::vector<std::uint32_t> own;
   /// The segments of all edges: each from one station to another.

@@ -95,6 +95,16 @@ bool MergedMesh::renumber(const PatchSet& set, const Mesh& all) {
   return is_same;
 }
 
+std::vector<EdgeVertex> MergedMesh::edge_vertices() const {
+  std::vector<EdgeVertex> all = own_->edge_vertices();
+  for (EdgeVertex& one : all) one.vertex = numbers_[one.vertex];
+  const auto is_same = [](const EdgeVertex& a, const EdgeVertex& b) {
+    return a.use == b.use && a.s == b.s && a.vertex == b.vertex;
+  };
+  all.erase(std::ranges::unique(all, is_same).begin(), all.end());
+  return all;
+}
+
 MeshCapacity MergedMesh::capacity() const {
   MeshCapacity capacity = own_->capacity();
   capacity.vertices = sources_.size();

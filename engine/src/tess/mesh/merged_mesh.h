@@ -21,6 +21,7 @@ class MergedMesh final : public Tessellation::Impl {
                                                           const Execution& execution);
 
   Proof proof() const override { return own_->proof(); }
+  std::vector<EdgeVertex> edge_vertices() const override;
   MeshCapacity capacity() const override;
   MeshCapacity before(std::size_t) const override { return {}; }  // patches have no vertices of their own
   Mesh allocate() const override;

@@ -162,6 +162,13 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>()};
 }
 
+std::vector<EdgeVertex> ProvenMesh::edge_vertices() const {
+  std::vector<EdgeVertex> all;
+  if (plan_.closed()) all = plan_.closed()->edge_vertices;
+  for (EdgeVertex& one : all) one.vertex += static_cast<std::uint32_t>(plan_.first_vertex(one.patch));
+  return all;
+}
+
 Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution) {
   if (!options_.joining.crease_angle && !options_.joining.share_vertices) return {};
   const ParameterMaps maps(set, parameters());

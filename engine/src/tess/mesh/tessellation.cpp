@@ -69,6 +69,9 @@ std::size_t Tessellation::patches_without_angle() const {
 std::span<const float> Tessellation::angles() const { return impl_->proof().angles; }
 double Tessellation::gap() const { return impl_->proof().gap; }
 std::span<const float> Tessellation::edge_gaps() const { return impl_->proof().edge_gaps; }
+Result<std::vector<EdgeVertex>> Tessellation::edge_vertices() const {
+  return guarded([&]() -> Result<std::vector<EdgeVertex>> { return impl_->edge_vertices(); });
+}
 double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
 std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }

@@ -34,6 +34,7 @@ class Tessellation::Impl {
   Status check_set(const PatchSet& set) const;
 
   virtual Proof proof() const { return {}; }
+  virtual std::vector<EdgeVertex> edge_vertices() const { return {}; }
   virtual MeshCapacity capacity() const = 0;
   virtual MeshCapacity before(std::size_t patch) const = 0;
   virtual Mesh allocate() const = 0;

@@ -152,6 +152,7 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   if (Status status = check_joining(options.joining, set); !status.ok()) return status;
   PlannerOptions planner;
   planner.closes_edges = options.joining.close_edges;
+  planner.lists_edge_vertices = options.joining.edge_vertices;
   planner.max_gap = options.joining.max_gap.value_or(std::numeric_limits<double>::infinity());
   planner.weld = weld_rules(options, smallest, set);
   set_shares(options, set, planner);

@@ -76,6 +76,7 @@ Status close_faces(const PlanFacts& facts, const PlanRequest& request, DividedPa
                      .is_joined = is_joined,
                      .chord = chord,
                      .max_gap = facts.needs.options().max_gap,
+                     .lists_vertices = facts.needs.options().lists_edge_vertices,
                      .same_share = same_share(set, facts.needs.options().least_share * request.tolerance),
                      .cancel = execution.cancel});
     if (!closed) return closed.status();

@@ -28,6 +28,7 @@ struct PlannerOptions {
   bool fewest = false;
   bool closes_edges = true;  ///< whether faces get the same vertices along the edges of shapes
   double max_gap = std::numeric_limits<double>::infinity();  ///< of edges that are closed
+  bool lists_edge_vertices = false;                          ///< see ClosedEdges::edge_vertices
   bool keeps_bounds = false;  ///< keeps the bounds of angles, half a KiB per patch, for many plans of the same facts
 };
 
