@@ -139,6 +139,7 @@ void PartShape::finish(Shape& shape, OcctShape& sources, Shortcomings& shortcomi
   std::vector<std::size_t> kept;  // of each face of the shape, its place in the part
   for (std::size_t k = 0; k < faces_.size(); ++k) {
     PartFace& face = faces_[k];
+    shortcomings.faces_whole.insert(shortcomings.faces_whole.end(), face.whole.size(), face.face);
     std::move(face.whole.begin(), face.whole.end(), std::back_inserter(shortcomings.whole));
     if (!face.status.ok()) {
       if (shortcomings.left_out.empty()) shortcomings.first_code = face.status.code();
@@ -155,8 +156,10 @@ void PartShape::finish(Shape& shape, OcctShape& sources, Shortcomings& shortcomi
     kept.push_back(k);
   }
   std::move(edges_).give_to(shape_, sources);
-  for (const UnusableEdges& one : drop_unusable_edges(shape_))
+  for (const UnusableEdges& one : drop_unusable_edges(shape_)) {
+    shortcomings.faces_whole.push_back(sources.faces[one.face].face);
     shortcomings.whole.push_back(words(faces_[kept[one.face]]) + " is read without shared edges: " + one.reason);
+  }
   shape = std::move(shape_);
 }
 

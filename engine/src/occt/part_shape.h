@@ -21,7 +21,8 @@ namespace tessera { inline namespace abi_0_1 {
 struct Shortcomings {
   std::vector<std::string> left_out;                ///< faces, one sentence each
   std::vector<TopoDS_Face> faces_left_out;          ///< the same, where they stand first
-  std::vector<std::string> whole;                   ///< faces whose loops or edges cannot be read
+  std::vector<std::string> whole;                   ///< faces whose loops or edges cannot be read, the same way
+  std::vector<TopoDS_Face> faces_whole;             ///< of each of these sentences
   StatusCode first_code = StatusCode::parse_error;  ///< of the first face that is left out
   std::size_t fitted = 0;                           ///< surfaces
   double worst_fit = 0;                             ///< their largest distance

@@ -1,0 +1,31 @@
+#pragma once
+// The polygons of edges on the triangulations of their faces.
+
+#include <opencascade/Poly_PolygonOnTriangulation.hxx>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "occt/face_triangulation.h"
+#include "tessera/occt.h"
+#include "tessera/patch_set.h"
+#include "tessera/tessellation.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// The polygon of an edge on the triangulation of a face, or both polygons of a seam.
+struct EdgePolygon {
+  std::uint32_t edge = 0, face = 0;
+  /// Nodes by growing parameters of the edge. The second one is that of the reversed edge at a seam, else null.
+  opencascade::handle<Poly_PolygonOnTriangulation> first, second;
+};
+
+/// Makes the polygons of all edges, by edges and faces. `on_edges`: as Tessellation::edge_vertices() lists them;
+/// `made`: `[face]`, from `nodes`. An edge that a face without a triangulation has gets none there. May throw
+/// Standard_Failure.
+std::vector<EdgePolygon> edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
+                                       std::span<const opencascade::handle<Poly_Triangulation>> made,
+                                       const OcctShape& sources, std::span<const EdgeVertex> on_edges);
+
+}}  // namespace tessera::abi_0_1

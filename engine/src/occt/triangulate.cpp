@@ -1,0 +1,254 @@
+#include <opencascade/BRepAdaptor_Curve.hxx>
+#include <opencascade/BRepAdaptor_Surface.hxx>
+#include <opencascade/BRep_Builder.hxx>
+#include <opencascade/BRep_Tool.hxx>
+#include <opencascade/BndLib_Add3dCurve.hxx>
+#include <opencascade/BndLib_AddSurface.hxx>
+#include <opencascade/Bnd_Box.hxx>
+#include <opencascade/Poly_TriangulationParameters.hxx>
+#include <opencascade/TopExp_Explorer.hxx>
+#include <opencascade/TopoDS.hxx>
+#include <opencascade/TopoDS_Compound.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_set>
+#include <utility>
+
+#include "base/text.h"
+#include "occt/edge_polygons.h"
+#include "occt/face_triangulation.h"
+#include "occt/guarded_calls.h"
+#include "occt/part_shape.h"
+#include "occt/stored_meshes.h"
+#include "parallel/call_progress.h"
+#include "parallel/caller_arena.h"
+#include "tessera/model.h"
+#include "tessera/occt_mesh.h"
+#include "tessera/tessellation.h"
+#include "tessera/topology.h"
+
+namespace tessera { inline namespace abi_0_1 {
+namespace {
+
+using opencascade::handle;
+
+constexpr double stage_ends[] = {0.4, 0.6, 0.8, 0.9};
+
+/// The faces of a shape, each TShape where it comes first.
+TopoDS_Shape distinct_faces(const TopoDS_Shape& shape) {
+  TopoDS_Compound faces;
+  const BRep_Builder builder;
+  builder.MakeCompound(faces);
+  std::unordered_set<const void*> seen;
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
+    if (seen.insert(at.Current().TShape().get()).second) builder.Add(faces, at.Current());
+  return faces;
+}
+
+/// The largest side of the boxes of a face's edges; of the face's own box if it has none.
+double size_of(const TopoDS_Face& face) {
+  double size = 0;
+  const auto extend = [&](const Bnd_Box& box) {
+    if (box.IsVoid() || box.IsOpen()) return;
+    const gp_XYZ sides = box.CornerMax().XYZ() - box.CornerMin().XYZ();
+    size = std::max({size, sides.X(), sides.Y(), sides.Z()});
+  };
+  for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
+    Bnd_Box box;
+    if (!BRep_Tool::Degenerated(TopoDS::Edge(edge.Current())))
+      BndLib_Add3dCurve::Add(BRepAdaptor_Curve(TopoDS::Edge(edge.Current())), 0, box);
+    extend(box);
+  }
+  if (size > 0) return size;
+  Bnd_Box box;
+  BndLib_AddSurface::Add(BRepAdaptor_Surface(face), 0, box);
+  extend(box);
+  return size;
+}
+
+class Triangulator {
+ public:
+  Triangulator(const TopoDS_Shape& shape, const OcctMeshOptions& options, const Execution& execution)
+      : options_(options), progress_(execution, stage_ends) {
+    described_.shape = distinct_faces(shape);
+  }
+
+  Result<OcctMeshReport> run() {
+    if (Status status = convert(); !status.ok()) return status;
+    Result<PatchSet> set = make_patch_set(shape_);
+    if (!set) return set.status();
+    const Result<TessellationOptions> wanted = plan_options(*set);
+    if (!wanted) return wanted.status();
+    const Result<Tessellation> plan = Tessellation::make(*set, *wanted, progress_.loops());
+    if (!plan) return plan.status();
+    Result<Mesh> mesh = plan->allocate();
+    if (!mesh) return mesh.status();
+    if (Status status = plan->run(*set, mesh->views(), progress_.loops()); !status.ok()) return status;
+    if (Status status = put(*set, *plan, *mesh); !status.ok()) return status;
+    state_faults(*set, *plan);
+    if (Status status = find_open(*plan, *mesh); !status.ok()) return status;
+    (void)progress_.finish({});
+    return std::move(report_);
+  }
+
+ private:
+  /// Makes a shape of ours of the faces.
+  Status convert() {
+    PlacedPart placed;
+    placed.shape = described_.shape;
+    Result<PartShape> part = PartShape::make(described_, placed, 0, {.cancel = progress_.loops().cancel});
+    if (!part) return part.status();
+    const auto convert = [&](std::size_t face) {
+      part->convert(face);
+      return Status();
+    };
+    if (Status status = each_on_threads(part->face_count(), 4, progress_.loops(), convert); !status.ok()) return status;
+    std::move(*part).finish(shape_, sources_, lacks_);
+    return shape_.faces.empty() ? Status(lacks_.first_code, lacks_.left_out[0]) : Status();
+  }
+
+  Result<TessellationOptions> plan_options(const PatchSet& set) {
+    TessellationOptions to;
+    to.angle = options_.angle;
+    if (to.angle) {
+      to.angle = std::min(*to.angle, std::numbers::pi / 2);
+      to.angle_rate = std::clamp(static_cast<int>(std::ceil(std::numbers::pi / *to.angle)), 1, 64);
+    }
+    to.max_triangles = options_.max_triangles;
+    to.joining.edge_vertices = true;
+    to.parameters = VertexParameters::patch;
+    tolerances_.assign(sources_.faces.size(), options_.deflection);
+    if (!options_.relative) {
+      to.tolerance = options_.deflection;
+      return to;
+    }
+    const auto find = [&](std::size_t k) {
+      tolerances_[k] *= size_of(sources_.faces[k].face);
+      return Status();
+    };
+    if (Status status = for_faces(find); !status.ok()) return status;
+    const double largest = *std::ranges::max_element(tolerances_);
+    for (double& tolerance : tolerances_)
+      if (!(tolerance > 0)) tolerance = largest > 0 ? largest : options_.deflection;
+    to.surface_tolerances.assign(tolerances_.begin(), tolerances_.begin() + std::ptrdiff_t(set.surface_count()));
+    return to;
+  }
+
+  Status for_faces(FunctionRef<Status(std::size_t)> body) {
+    return each_on_threads(sources_.faces.size(), 4, progress_.loops(), body);
+  }
+
+  Status put(const PatchSet& set, const Tessellation& plan, const Mesh& mesh) {
+    const Result<std::vector<EdgeVertex>> on_edges = plan.edge_vertices();
+    if (!on_edges) return on_edges.status();
+    FaceTriangulations triangulations(set, plan, mesh, *on_edges, shape_, sources_);
+    std::vector<handle<Poly_Triangulation>> made(sources_.faces.size());
+    const handle<Poly_TriangulationParameters> parameters =
+        new Poly_TriangulationParameters(options_.deflection, options_.angle.value_or(-1));
+    const auto make = [&](std::size_t k) {
+      made[k] = triangulations.make(k);
+      if (made[k].IsNull()) return Status();
+      const double bound = triangulations.bound(k);
+      made[k]->Deflection(std::isfinite(bound) ? std::max(bound, tolerances_[k]) : tolerances_[k]);
+      made[k]->Parameters(parameters);
+      return Status();
+    };
+    if (Status status = for_faces(make); !status.ok()) return status;
+    const std::vector<EdgePolygon> polygons = edge_polygons(set, triangulations, made, sources_, *on_edges);
+    if (Status status = store(sources_, made, polygons); !status.ok()) return status;
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      if (made[k].IsNull()) {
+        report_.faults.push_back({sources_.faces[k].face, "it has no triangles: it is too thin for the deflection"});
+        continue;
+      }
+      ++report_.faces;
+      report_.nodes += static_cast<std::size_t>(made[k]->NbNodes());
+      report_.triangles += static_cast<std::size_t>(made[k]->NbTriangles());
+    }
+    return {};
+  }
+
+  /// Finds whether a side of a triangle is alone. Borders that the plan counts as open may still meet.
+  Status find_open(const Tessellation& plan, const Mesh& mesh) {
+    report_.closed = plan.open_edges() == 0 && plan.crossed_patches().empty() && report_.left_out.empty();
+    if (report_.closed) return {};
+    const Result<MeshReport> found = check(mesh);
+    if (!found) return found.status();
+    report_.closed = found->open_edges == 0 && report_.left_out.empty();
+    if (!report_.closed) list_open_edges();
+    return {};
+  }
+
+  void state_faults(const PatchSet& set, const Tessellation& plan) {
+    report_.bound = plan.bound() + lacks_.worst_fit;
+    report_.gap = plan.gap();
+    report_.angle = plan.angle();
+    report_.certified = plan.certified() && lacks_.worst_fit == 0;
+    report_.patches_without_angle = plan.patches_without_angle();
+    for (std::size_t k = 0; k < lacks_.left_out.size(); ++k)
+      report_.left_out.push_back({lacks_.faces_left_out[k], lacks_.left_out[k]});
+    for (std::size_t k = 0; k < lacks_.whole.size(); ++k)
+      report_.faults.push_back({lacks_.faces_whole[k], lacks_.whole[k]});
+    const auto add = [&](std::size_t face, std::string reason) {
+      report_.faults.push_back({sources_.faces[face].face, std::move(reason)});
+    };
+    for (const Status& fault : set.trim_faults())
+      add(static_cast<std::size_t>(fault.index()), "it is whole, its loops cannot be used: " + fault.message());
+    std::vector<double> beyond(sources_.faces.size(), 0);
+    for (const std::uint32_t patch : plan.patches_beyond_tolerance()) {
+      double& worst = beyond[set.source(patch).surface];
+      worst = std::max(worst, double(plan.bounds()[patch]));
+    }
+    for (const std::uint32_t patch : plan.crossed_patches()) beyond[set.source(patch).surface] = HUGE_VAL;
+    for (std::size_t k = 0; k < beyond.size(); ++k)
+      if (beyond[k] > 0)
+        add(k, std::isinf(beyond[k]) ? "a part of it has no triangles: its border crosses itself"
+                                     : "its triangles are proven to be within " + text(beyond[k]) + " only");
+  }
+
+  void list_open_edges() {
+    std::vector<std::uint32_t> uses(shape_.edges.size(), 0);
+    for (const ShapeFace& face : shape_.faces)
+      for (const TrimLoop& loop : edge_loops(face))
+        for (const Coedge& coedge : loop.coedges) ++uses[coedge.edge];
+    for (std::size_t k = 0; k < uses.size(); ++k)
+      if (uses[k] == 1 && !shape_.edges[k].degenerate) report_.open_edges.push_back(sources_.edges[k].edge);
+  }
+
+  const OcctMeshOptions& options_;
+  CallProgress progress_;
+  DescribedShape described_;  ///< a compound of the faces
+  Shape shape_;
+  OcctShape sources_;
+  Shortcomings lacks_;
+  std::vector<double> tolerances_;  ///< by face
+  OcctMeshReport report_;
+};
+
+Status check_request(const TopoDS_Shape& shape, const OcctMeshOptions& options) {
+  const auto bad = [](std::string message) { return Status(StatusCode::invalid_argument, std::move(message)); };
+  if (!(options.deflection > 0) || !std::isfinite(options.deflection))
+    return bad("the deflection must be above 0, found " + text(options.deflection));
+  if (options.angle && !(*options.angle > 0)) return bad("the angle must be above 0, found " + text(*options.angle));
+  if (shape.IsNull()) return bad("the shape is null");
+  if (!TopExp_Explorer(shape, TopAbs_FACE).More()) return bad("the shape has no faces");
+  return {};
+}
+
+}  // namespace
+
+Result<OcctMeshReport> triangulate(const TopoDS_Shape& shape, const OcctMeshOptions& options,
+                                   const Execution& execution) {
+  return guarded_occt([&]() -> Result<OcctMeshReport> {
+    if (Status status = check_request(shape, options); !status.ok()) return status;
+    const auto run = [&] { return Triangulator(shape, options, execution).run(); };
+    if (options.parallel) return run();
+    Result<OcctMeshReport> made = Status(StatusCode::internal, "not run");
+    in_own_arena(1, [&] { made = guarded_occt(run); });
+    return made;
+  });
+}
+
+}}  // namespace tessera::abi_0_1
