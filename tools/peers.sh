@@ -31,6 +31,7 @@ comparisons=(
   "occt_mesh|meshes of equal error of the same surfaces: OpenCASCADE (libocct-modeling-algorithms-dev)"
   "occt_lean_mesh|triangles at equal error, mainly of rational surfaces and models: OpenCASCADE (libocct-data-exchange-dev)"
   "occt_closed_mesh|closed meshes of CAD files at ten tolerances: open edges, gaps, triangles and time: OpenCASCADE"
+  "occt_triangulate|triangulate() of tessera::occt, shapes in memory at equal error, one thread and two: OpenCASCADE"
   "step_reading|STEP files read, and read and meshed to .glb: OpenCASCADE (libocct-data-exchange-dev)"
   "occt_step_regions|regions of the faces of STEP files, by 2,000 points of each: OpenCASCADE"
   "occt_trimmed_rays|random rays at trimmed faces of CAD files: hits, differences by cause, time: OpenCASCADE"

@@ -81,7 +81,9 @@ class Parts {
     std::vector<TopoDS_Face> faces;
     for (const auto& face : case_.faces) faces.push_back(face->face());
     OcctShape theirs(case_.as_read, faces);
-    find_deflection(theirs, meter, error, tolerance, row);
+    const EqualMesh equal = mesh_of_equal_error(theirs, meter, error, tolerance, options_.angle);
+    row.deflection = equal.deflection / size_, row.occt_error = equal.error / size_;
+    row.occt_triangles = equal.triangles;
     if (row.occt_triangles == 0) throw std::runtime_error("OpenCASCADE makes no triangles");
     const std::vector<double> best =
         best_interleaved(3,
@@ -115,28 +117,6 @@ class Parts {
       all.insert(all.end(), of_shape.begin(), of_shape.end());
     }
     return all;
-  }
-
-  /// Finds about the largest deflection at which OpenCASCADE's error is at most `own`, Tessera's. If even a quarter of
-  /// that is too large, as where a file has gaps, the deflection is `own` itself. Flat parts have no error.
-  void find_deflection(OcctShape& theirs, const FaceErrorMeter& meter, double own, double tolerance,
-                       PartRow& row) const {
-    const double error = std::max(own, 1e-3 * tolerance);
-    constexpr double near = 1.02, enough = 1.15;
-    double good = 0, bad = 0;
-    for (double deflection = error; good == 0 || bad == 0 || bad > enough * good;) {
-      if (std::isinf(theirs.mesh(deflection, options_.angle, max_mesh_seconds)))
-        throw std::runtime_error("OpenCASCADE takes more than 20 s for the same error");
-      const std::vector<SurfaceTriangle> triangles = theirs.triangles();
-      const double found = meter.measure(triangles).worst();
-      const bool is_good = found <= near * error;
-      if (is_good || deflection == error)
-        row.deflection = deflection / size_, row.occt_error = found / size_, row.occt_triangles = triangles.size();
-      (is_good ? good : bad) = deflection;
-      if (good == 0 && deflection < 0.26 * error) return;
-      if (good > 8 * tolerance) return;
-      deflection = bad == 0 ? 2 * good : good == 0 ? bad / 2 : std::sqrt(good * bad);
-    }
   }
 
   TrimmedCase case_;
@@ -223,6 +203,27 @@ void print_summary(const std::vector<Named>& rows) {
 }
 
 }  // namespace
+
+EqualMesh mesh_of_equal_error(OcctShape& theirs, const FaceErrorMeter& meter, double own, double tolerance,
+                              double angle) {
+  const double error = std::max(own, 1e-3 * tolerance);
+  constexpr double near = 1.02, enough = 1.15;
+  EqualMesh found;
+  double good = 0, bad = 0;
+  for (double deflection = error; good == 0 || bad == 0 || bad > enough * good;) {
+    if (std::isinf(theirs.mesh(deflection, angle, max_mesh_seconds)))
+      throw std::runtime_error("OpenCASCADE takes more than 20 s for the same error");
+    const std::vector<SurfaceTriangle> triangles = theirs.triangles();
+    const double measured = meter.measure(triangles).worst();
+    const bool is_good = measured <= near * error;
+    if (is_good || deflection == error) found = {deflection, measured, triangles.size()};
+    (is_good ? good : bad) = deflection;
+    if (good == 0 && deflection < 0.26 * error) break;
+    if (good > 8 * tolerance) break;
+    deflection = bad == 0 ? 2 * good : good == 0 ? bad / 2 : std::sqrt(good * bad);
+  }
+  return found;
+}
 
 void compare_parts(const PartOptions& options) {
   std::vector<std::filesystem::path> files;
