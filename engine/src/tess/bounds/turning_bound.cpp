@@ -81,8 +81,8 @@ double largest(const double* numbers, int count) {
 /// One piece of the field: bounds over it, and the turning at its corners.
 class Piece {
  public:
-  /// `scale`: the factor from derivatives by the piece's parameters to those by the patch's.
-  Piece(const NormalPiece& net, double scale, double rounding, const Scratch& scratch)
+  /// `scale`: the factors from derivatives by the piece's parameters to those by the patch's.
+  Piece(const NormalPiece& net, const Turning& scale, double rounding, const Scratch& scratch)
       : net_(net), scratch_(scratch), scale_(scale), rounding_(rounding) {
     const double *const x = net.at[0], *const y = net.at[1], *const z = net.at[2];
     const int count = net.count();
@@ -109,7 +109,7 @@ class Piece {
     if (!(least_ > 0)) return {infinity, infinity};
     const int m = net_.rows - 1, n = net_.columns - 1;
     const double u = m * largest_difference(net_.columns, net_.count()), v = n * largest_difference(1, net_.columns);
-    return std::isnan(u + v) ? Turning{infinity, infinity} : Turning{u * scale_ / least_, v * scale_ / least_};
+    return std::isnan(u + v) ? Turning{infinity, infinity} : Turning{u * scale_.u / least_, v * scale_.v / least_};
   }
   /// Returns the turning at the corners, a lower bound of the largest over the piece.
   AtCorners at_corners() const {
@@ -121,8 +121,8 @@ class Piece {
         const double size = dot(normal, normal);
         if (!(size > rounding_ * rounding_)) continue;
         const int i1 = i == 0 ? std::min(1, m) : m - 1, j1 = j == 0 ? std::min(1, n) : n - 1;
-        const double u = m * scale_ * length(cross(normal, net_.point(i1, j))) / size,
-                     v = n * scale_ * length(cross(normal, net_.point(i, j1))) / size;
+        const double u = m * scale_.u * length(cross(normal, net_.point(i1, j))) / size,
+                     v = n * scale_.v * length(cross(normal, net_.point(i, j1))) / size;
         corners.most = {std::max(corners.most.u, u), std::max(corners.most.v, v)};
         corners.least = {std::min(corners.least.u, u), std::min(corners.least.v, v)};
       }
@@ -154,7 +154,8 @@ class Piece {
 
   const NormalPiece& net_;
   const Scratch& scratch_;
-  double scale_, rounding_;
+  Turning scale_;
+  double rounding_;
   Vec3 axis_;
   double least_, sine_;
 };
@@ -178,7 +179,7 @@ class TurningSearch {
       const Vec3& n = normal.net.at[static_cast<std::size_t>(k)];
       whole.at[0][k] = n.x, whole.at[1][k] = n.y, whole.at[2][k] = n.z;
     }
-    visit(whole, 0, 0, 0);
+    visit(whole, {});
   }
 
  private:
@@ -190,28 +191,50 @@ class TurningSearch {
     return {rows_, columns_, {start, start + rows_ * columns_, start + 2 * rows_ * columns_}};
   }
 
-  /// `i` and `j`: the piece's place among those of its depth.
-  void visit(const NormalPiece& net, int depth, int i, int j) {
+  /// The place of a piece: one of 2^depth parts along each parameter.
+  struct Place {
+    int level = 0;  ///< how often the patch was cut
+    int depth_u = 0, depth_v = 0;
+    int i = 0, j = 0;                           ///< among those of its depth
+    bool is_flat_u = false, is_flat_v = false;  ///< whether the normal does not turn there, so that nothing is cut
+  };
+
+  void visit(const NormalPiece& net, Place at) {
     if (!bound_.is_finite_) return;
-    const double scale = std::ldexp(1, depth);
+    const Turning scale{std::ldexp(1, at.depth_u), std::ldexp(1, at.depth_v)};
     const Piece piece(net, scale, rounding_, scratch_);
     const Turning bound = piece.bound();
     const AtCorners corners = piece.at_corners();
     if (std::max(corners.most.u, corners.most.v) > max_turning) bound_.is_finite_ = false;
-    const int down = std::max(depth - rectangle_depth, 0);
-    Turning& known = known_[i >> down][j >> down];
-    const bool is_small = bound.u + bound.v <= few_cells * angle_ * scale;
-    if (depth == max_depth || is_small || !is_worth_cutting(depth, bound, corners, known)) {
-      take(bound, depth, i, j);
+    const Turning& known = known_[at.i >> std::max(at.depth_u - rectangle_depth, 0)]
+                                 [at.j >> std::max(at.depth_v - rectangle_depth, 0)];
+    const bool is_small = bound.u / scale.u + bound.v / scale.v <= few_cells * angle_;
+    if (at.level == max_depth || is_small || !is_worth_cutting(at.level, bound, corners, known)) {
+      take(bound, at);
       return;
     }
-    const NormalPiece quarter[4] = {this->net(depth + 1, 0), this->net(depth + 1, 1), this->net(depth + 1, 2),
-                                    this->net(depth + 1, 3)};
-    std::copy_n(net.at[0], size_of_net(), quarter[3].at[0]);
-    cut(quarter[3], quarter[1], true);
-    cut(quarter[1], quarter[0], false);
-    cut(quarter[3], quarter[2], false);
-    for (int k = 0; k < 4; ++k) visit(quarter[k], depth + 1, 2 * i + k / 2, 2 * j + k % 2);
+    at.is_flat_u = at.is_flat_u || bound.u <= negligible;
+    at.is_flat_v = !at.is_flat_u && (at.is_flat_v || bound.v <= negligible);
+    cut_and_visit(net, at);
+  }
+
+  /// Visits the parts of a piece: halves if the normal turns along one parameter alone, else quarters.
+  void cut_and_visit(const NormalPiece& net, const Place& at) {
+    const NormalPiece part[4] = {this->net(at.level + 1, 0), this->net(at.level + 1, 1), this->net(at.level + 1, 2),
+                                 this->net(at.level + 1, 3)};
+    std::copy_n(net.at[0], size_of_net(), part[3].at[0]);
+    const bool cuts_u = !at.is_flat_u, cuts_v = !at.is_flat_v;
+    if (cuts_u) cut(part[3], part[1], true);
+    if (cuts_u && cuts_v) cut(part[1], part[0], false);
+    if (cuts_v) cut(part[3], part[2], false);
+    for (int k = 0; k < 4; ++k) {
+      if ((!cuts_u && k < 2) || (!cuts_v && k % 2 == 0)) continue;
+      Place next = at;
+      ++next.level;
+      if (cuts_u) ++next.depth_u, next.i = 2 * at.i + k / 2;
+      if (cuts_v) ++next.depth_v, next.j = 2 * at.j + k % 2;
+      visit(part[k], next);
+    }
   }
 
   /// Whether smaller pieces may have bounds that save cells.
@@ -227,17 +250,21 @@ class TurningSearch {
   }
 
   /// Raises the bounds of the rectangles that the piece lies in, or that lie in it.
-  void take(const Turning& bound, int depth, int i, int j) {
+  void take(const Turning& bound, const Place& at) {
     if (!(std::max(bound.u, bound.v) <= max_turning)) bound_.is_finite_ = false;
     if (!bound_.is_finite_) return;
-    const int up = std::max(rectangle_depth - depth, 0), down = std::max(depth - rectangle_depth, 0);
+    const auto first = [](int k, int depth) {
+      return depth > rectangle_depth ? k >> (depth - rectangle_depth) : k << (rectangle_depth - depth);
+    };
+    const auto count = [](int depth) { return 1 << std::max(rectangle_depth - depth, 0); };
+    const int i = first(at.i, at.depth_u), j = first(at.j, at.depth_v);
     const float u = rounded_up(bound.u), v = rounded_up(bound.v);
-    for (int k = (i << up) >> down; k <= (((i + 1) << up) - 1) >> down; ++k)
-      for (int l = (j << up) >> down; l <= (((j + 1) << up) - 1) >> down; ++l) {
-        const std::size_t at = TurningBound::at(k, l);
-        bound_.u_[at] = std::max(bound_.u_[at], u);
-        bound_.v_[at] = std::max(bound_.v_[at], v);
-        known_[k][l] = {bound_.u_[at], bound_.v_[at]};
+    for (int k = i; k < i + count(at.depth_u); ++k)
+      for (int l = j; l < j + count(at.depth_v); ++l) {
+        const std::size_t rectangle = TurningBound::at(k, l);
+        bound_.u_[rectangle] = std::max(bound_.u_[rectangle], u);
+        bound_.v_[rectangle] = std::max(bound_.v_[rectangle], v);
+        known_[k][l] = {bound_.u_[rectangle], bound_.v_[rectangle]};
       }
   }
 

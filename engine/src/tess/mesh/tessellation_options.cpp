@@ -159,7 +159,9 @@ Result<PlannerOptions> planner_options(const TessellationOptions& options, const
   planner.angle = options.angle;
   planner.angle_rate = options.angle_rate;
   planner.fewest = options.fewest;
-  planner.keeps_bounds = options.budget.has_value();
+  // Cut patches are cut in several attempts, each of which asks for the bounds again.
+  constexpr std::size_t kept_bounds = std::size_t{1} << 16;
+  planner.keeps_bounds = options.budget || (set.cut_count() > 0 && set.patch_count() <= kept_bounds);
   planner.f64_positions = options.precision == Precision::double_precision;
   if (planner.f64_positions) planner.f64_patches.assign(set.patch_count(), 1);
   if (!options.pixels) return planner;
