@@ -33,6 +33,8 @@ struct DescribedShape {
   std::string unit, file_unit;            ///< of lengths: as read, and as the file states them
   std::vector<std::string> complaints;    ///< OpenCASCADE's messages about parts that it cannot read
   std::vector<std::string> notes;         ///< what else the model lacks or changes, one sentence each
+  /// How far along the surface a border may move where its curves are fitted, a length; 0: by rounding alone.
+  double fit_tolerance = 0;
   std::string contents;                   ///< for a file without faces: what it holds instead, or empty
 };
 

@@ -36,6 +36,7 @@ struct FaceBorder {
   /// to its users.
   double tolerance = 0;
   double vertex_tolerance = 0;  ///< the largest of all vertices, and at least `tolerance`
+  double fit_tolerance = 0;     ///< see DescribedShape::fit_tolerance
 };
 /// Lists the border of a face that has a surface. May throw Standard_Failure.
 FaceBorder face_border(const TopoDS_Face& face);

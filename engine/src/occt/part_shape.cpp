@@ -89,7 +89,8 @@ Status PartShape::try_face(PartFace& part_face) const {
     return Status(StatusCode::unsupported,
                   "it has no surface" + (count == 0 ? "" : ", it is a mesh of " + counted(count, "triangle")));
   }
-  const FaceBorder border = face_border(face);
+  FaceBorder border = face_border(face);
+  border.fit_tolerance = file_->fit_tolerance;
   Result<FaceBox> box = face_box(border);
   if (!box) return box.status();
   const bool is_part = take_range(part_face, *box);

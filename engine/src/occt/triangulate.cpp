@@ -34,6 +34,10 @@ namespace {
 
 using opencascade::handle;
 
+/// The part of the deflection that curves may be fitted with, so that they have few pieces. Borders move by it along u
+/// and along v.
+constexpr double fit_share = 1.0 / 256, left_share = 1 - 2 * fit_share;
+
 constexpr double stage_ends[] = {0.4, 0.6, 0.8, 0.9};
 
 /// The faces of a shape, each TShape where it comes first.
@@ -73,6 +77,7 @@ class Triangulator {
   Triangulator(const TopoDS_Shape& shape, const OcctMeshOptions& options, const Execution& execution)
       : options_(options), progress_(execution, stage_ends) {
     described_.shape = distinct_faces(shape);
+    if (!options.relative) described_.fit_tolerance = fit_share * options.deflection;
   }
 
   Result<OcctMeshReport> run() {
@@ -121,7 +126,7 @@ class Triangulator {
     to.parameters = VertexParameters::patch;
     tolerances_.assign(sources_.faces.size(), options_.deflection);
     if (!options_.relative) {
-      to.tolerance = options_.deflection;
+      to.tolerance = left_share * options_.deflection;
       return to;
     }
     const auto find = [&](std::size_t k) {
@@ -182,7 +187,7 @@ class Triangulator {
   }
 
   void state_faults(const PatchSet& set, const Tessellation& plan) {
-    report_.bound = plan.bound() + lacks_.worst_fit;
+    report_.bound = plan.bound() + 2 * described_.fit_tolerance + lacks_.worst_fit;
     report_.gap = plan.gap();
     report_.angle = plan.angle();
     report_.certified = plan.certified() && lacks_.worst_fit == 0;
