@@ -13,6 +13,17 @@ namespace {
 constexpr double mixes[][3] = {{0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {1. / 3, 1. / 3, 1. / 3},
                                {1, 0, 0},     {0, 1, 0},     {0, 0, 1}};
 
+/// The distance from starts where one corner's parameter has no say: at a pole it may be any.
+double distance_at_poles(const TrueFace& face, const Vec3& p, const SurfaceTriangle& t, const Parameters& mixed) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Parameters &a = t.parameters[(c + 1) % 3], &b = t.parameters[(c + 2) % 3];
+    least = std::min({least, face.distance(p, {(a[0] + b[0]) / 2, mixed[1]}),
+                      face.distance(p, {mixed[0], (a[1] + b[1]) / 2})});
+  }
+  return least;
+}
+
 }  // namespace
 
 std::vector<SurfaceTriangle> triangles_on_faces(const TrimmedCase& one, const PatchSet& set, const Mesh& mesh,
@@ -61,7 +72,9 @@ FaceErrors FaceErrorMeter::measure(std::span<const SurfaceTriangle> mesh) const 
       const auto mixed = [&](std::size_t d) {
         return a * t.parameters[0][d] + b * t.parameters[1][d] + c * t.parameters[2][d];
       };
-      const double distance = case_.faces[t.face]->distance(p, {mixed(0), mixed(1)});
+      double distance = case_.faces[t.face]->distance(p, {mixed(0), mixed(1)});
+      if (distance > errors.from_mesh)
+        distance = std::min(distance, distance_at_poles(*case_.faces[t.face], p, t, {mixed(0), mixed(1)}));
       ++errors.mesh_points;
       if (distance > errors.from_mesh) errors.from_mesh = distance, errors.mesh_face = t.face;
     }
