@@ -10,7 +10,7 @@ namespace {
 /// Fractions of linear functions, as a rational spline of degree 1.
 class Fractions {
  public:
-  explicit Fractions(const MonotoneFunction& f) : f_(f) {}
+  Fractions(const MonotoneFunction& f, double tolerance) : f_(f), tolerance_(tolerance) {}
 
   /// Empty if the function is not monotone.
   std::optional<Curve> curve() {
@@ -44,7 +44,7 @@ class Fractions {
     bool fits = true;
     for (const double x : {0.25, 0.75}) {
       const double fraction = ((1 - x) * a + x * ratio * b) / (1 - x + x * ratio);
-      fits = fits && std::abs(fraction - f_.at((1 - x) * from + x * to)) <= 1e-10 * std::abs(b - a);
+      fits = fits && std::abs(fraction - f_.at((1 - x) * from + x * to)) <= tolerance_ * std::abs(b - a);
     }
     constexpr int deepest = 6;
     if (fits || depth == deepest) return add_point(to, ratio);
@@ -53,6 +53,7 @@ class Fractions {
   }
 
   const MonotoneFunction& f_;
+  double tolerance_;
   std::vector<Vec3> points_;
   std::vector<double> weights_, knots_;
   bool monotone_ = true;
@@ -89,9 +90,9 @@ void settle_breaks(MonotoneFunction& f) {
   });
 }
 
-void state_parameter(const MonotoneFunction& f, const Interval& domain, Coedge& coedge) {
+void state_parameter(const MonotoneFunction& f, const Interval& domain, Coedge& coedge, double tolerance) {
   if (is_even(f, domain, coedge.reversed)) return;
-  coedge.parameter = Fractions(f).curve();
+  coedge.parameter = Fractions(f, tolerance).curve();
   if (!coedge.parameter) coedge.edge = no_id;
 }
 

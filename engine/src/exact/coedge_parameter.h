@@ -20,7 +20,8 @@ struct MonotoneFunction {
 void settle_breaks(MonotoneFunction& f);
 /// States in `coedge` that the parameter of its curve is f(s) at the edge's parameter s: nothing where f runs evenly
 /// from one end of `domain`, the curve's, to the other. Otherwise fractions of linear functions, a rational spline of
-/// degree 1. A function that is not monotone takes the edge from the coedge.
-void state_parameter(const MonotoneFunction& f, const Interval& domain, Coedge& coedge);
+/// degree 1, within `tolerance` of the range of their values. A function that is not monotone takes the edge from the
+/// coedge.
+void state_parameter(const MonotoneFunction& f, const Interval& domain, Coedge& coedge, double tolerance = 1e-10);
 
 }}  // namespace tessera::abi_0_1

@@ -78,14 +78,20 @@ class SurfaceSides {
   handle<Geom_Surface> surface_;
 };
 
-Status append_edge(const BorderEdge& border, const SurfaceSides& sides,
-                   const Reparametrization& parameters, double tolerance, const ShapeEdges& edges, TrimLoop& loop) {
+/// How far the curves of loops may lie from those of the file.
+struct LoopTolerances {
+  double curve = 0;      ///< in our parameters of the surface
+  double parameter = 0;  ///< of an edge's parameter along it, as a share of its range
+};
+
+Status append_edge(const BorderEdge& border, const SurfaceSides& sides, const Reparametrization& parameters,
+                   const LoopTolerances& tolerances, const ShapeEdges& edges, TrimLoop& loop) {
   if (border.curve.IsNull()) return Status(StatusCode::unsupported, "an edge has no curve in the face's parameters");
   const bool reversed = border.edge.Orientation() == TopAbs_REVERSED;
-  Result<TrimCurve> made = trim_curve(border.curve, border.range, reversed, parameters, tolerance);
+  Result<TrimCurve> made = trim_curve(border.curve, border.range, reversed, parameters, tolerances.curve);
   if (!made) return made.status();
   if (Status status = sides.keep_inside(made->curve); !status.ok()) return status;
-  loop.coedges.push_back(edges.coedge(border.edge, *made, border.range));
+  loop.coedges.push_back(edges.coedge(border.edge, *made, border.range, tolerances.parameter));
   loop.curves.push_back(std::move(made->curve));
   return {};
 }
@@ -139,12 +145,12 @@ Result<FaceBox> face_box(const FaceBorder& border) {
 Result<FaceLoops> face_loops(const FaceBorder& border, const FaceBox& box, const Reparametrization& parameters,
                              const ShapeEdges& edges) {
   const SurfaceSides sides(border, box);
-  const double tolerance = fit_tolerance(border, box, parameters);
+  const LoopTolerances tolerances{fit_tolerance(border, box, parameters), border.fit_tolerance > 0 ? 1e-7 : 1e-10};
   FaceLoops out;
   for (const BorderWire& wire : border.wires) {
     TrimLoop loop{{}, !wire.is_outer};
     for (const BorderEdge& edge : wire.edges)
-      if (Status status = append_edge(edge, sides, parameters, tolerance, edges, loop); !status.ok()) return status;
+      if (Status status = append_edge(edge, sides, parameters, tolerances, edges, loop); !status.ok()) return status;
     const auto is_nameless = [](const Coedge& coedge) { return coedge.edge == no_id; };
     if (std::any_of(loop.coedges.begin(), loop.coedges.end(), is_nameless)) {
       loop.coedges.clear();

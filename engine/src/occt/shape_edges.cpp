@@ -80,7 +80,8 @@ void ShapeEdges::read_edge(std::size_t k) {
   parameter.arcs = line->arcs;
 }
 
-Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs) const {
+Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs,
+                           double tolerance) const {
   Coedge out{no_id, edge.Orientation() == TopAbs_REVERSED, {}};
   const int index = maps_->edges.FindIndex(edge);
   if (index == 0) return out;
@@ -103,7 +104,7 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
     f.breaks.push_back(parameter.arcs ? parameter.arcs->parameter(t) : t);
   }
   settle_breaks(f);
-  state_parameter(f, trim.curve.domain(), out);
+  state_parameter(f, trim.curve.domain(), out, tolerance);
   return out;
 }
 

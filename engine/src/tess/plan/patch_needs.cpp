@@ -92,7 +92,7 @@ Status PatchNeeds::bound_views(const Execution& execution) {
   turnings_.resize(shapes_.size());
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      if (!shapes_[k].is_curve) turnings_[k] = turning_of(k);
+      if (!shapes_[k].is_curve) turnings_[k] = find_turning(k);
   };
   return parallel_for(shapes_.size(), patches_per_task, execution, bound);
 }
@@ -104,7 +104,7 @@ void PatchNeeds::bound_pictures(std::size_t block) {
   ScreenSpaceBound::find(*options_.camera, *set_, block, moved, options_.pixels, pictures_.data());
 }
 
-PatchNeeds::NormalTurning PatchNeeds::turning_of(std::size_t patch) const {
+PatchNeeds::NormalTurning PatchNeeds::find_turning(std::size_t patch) const {
   const auto is_made_pole = [&](Side side) {  // by welding
     return !welded_poles_.empty() && welded_poles_[patch].has(side);
   };
@@ -197,7 +197,7 @@ NeededSegments PatchNeeds::segments_for(std::size_t patch, const PlanRequest& re
   const double given = this->given(patch);
   const ScreenSpaceBound* const picture = options_.camera ? &pictures_[patch] : nullptr;
   std::optional<NormalTurning> turning;
-  if (options_.angle && !shapes_[patch].is_curve) turning = turnings_.empty() ? turning_of(patch) : turnings_[patch];
+  if (options_.angle && !shapes_[patch].is_curve) turning = turning_of(patch);
   std::optional<ChordBound> chord;
   NeededSegments needed;
   CellLimits limits;

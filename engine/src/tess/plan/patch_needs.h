@@ -92,12 +92,16 @@ class PatchNeeds {
     /// that of the patch with a pole there, and divides the patch, but proves nothing.
     bool is_certified = true;
   };
-  NormalTurning turning_of(std::size_t patch) const;
+  /// Returns the bound of a patch, which is found anew each time unless PlannerOptions::keeps_bounds.
+  NormalTurning turning_of(std::size_t patch) const {
+    return turnings_.empty() ? find_turning(patch) : turnings_[patch];
+  }
 
   /// Returns the segments that keep all limits, at rates up to `most`.
   NeededSegments segments_for(std::size_t patch, const PlanRequest& request, int most) const;
 
  private:
+  NormalTurning find_turning(std::size_t patch) const;
   /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones that keep theirs.
   ProvenSegments settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits, int min_rate,
                         const PlanRequest& request, Rates rates) const;
