@@ -18,8 +18,8 @@ double distance_at_poles(const TrueFace& face, const Vec3& p, const SurfaceTrian
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < 3; ++c) {
     const Parameters &a = t.parameters[(c + 1) % 3], &b = t.parameters[(c + 2) % 3];
-    least = std::min({least, face.distance(p, {(a[0] + b[0]) / 2, mixed[1]}),
-                      face.distance(p, {mixed[0], (a[1] + b[1]) / 2})});
+    least = std::min(
+        {least, face.distance(p, {(a[0] + b[0]) / 2, mixed[1]}), face.distance(p, {mixed[0], (a[1] + b[1]) / 2})});
   }
   return least;
 }

@@ -75,7 +75,8 @@ struct Row {
 /// A file, read once; each distinct face where it comes first.
 class Subject {
  public:
-  Subject(const std::filesystem::path& file, const Options& options) : case_(read_case(file, false)), options_(options) {
+  Subject(const std::filesystem::path& file, const Options& options)
+      : case_(read_case(file, false)), options_(options) {
     std::set<const void*> seen;
     std::erase_if(case_.faces, [&](const auto& face) { return !seen.insert(face->face().TShape().get()).second; });
     Bnd_Box box;
@@ -216,8 +217,8 @@ int run(const Options& options) {
     std::fflush(stdout);
     rows.push_back({name, row});
     add_result({"triangulations at equal error: " + name, "OpenCASCADE " OCC_VERSION_COMPLETE,
-                "BRepMesh_IncrementalMesh", static_cast<double>(row.occt_triangles) / row.occt_seconds,
-                "triangulate()", row.speed()});
+                "BRepMesh_IncrementalMesh", static_cast<double>(row.occt_triangles) / row.occt_seconds, "triangulate()",
+                row.speed()});
   }
   print_summary(rows);
   return good ? 0 : 1;

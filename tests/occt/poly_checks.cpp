@@ -41,9 +41,7 @@ struct Line {
 class Checker {
  public:
   Checker(const TopoDS_Shape& shape, const OcctMeshReport& report) : shape_(shape), report_(report) {
-    Bnd_Box box;
-    BRepBndLib::Add(shape, box, false);
-    size_ = box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+    size_ = size_of(shape);
   }
 
   PolyFacts run() {
@@ -94,10 +92,6 @@ class Checker {
       const double length = mesh.Node(side.first).Distance(mesh.Node(side.second));
       if (length <= gap + 1e-6 * size_) continue;
       ++odd;
-      if (std::getenv("B_DEBUG")) {
-        const auto a = mesh.UVNode(side.first), b = mesh.UVNode(side.second);
-        std::printf("odd side %d %d count %d uv %.12g %.12g to %.12g %.12g\n", side.first, side.second, count, a.X(), a.Y(), b.X(), b.Y());
-      }
       longest = std::max(longest, length);
     }
     if (odd > 0)
@@ -129,7 +123,8 @@ class Checker {
       gp_Vec own(mesh.Normal(k));
       own.Transform(place);
       if (place.IsNegative()) own.Reverse();
-      const bool is_pole = along_u.Magnitude() * (u1 - u0) < 1e-5 * size_ || along_v.Magnitude() * (v1 - v0) < 1e-5 * size_;
+      const bool is_pole =
+          along_u.Magnitude() * (u1 - u0) < 1e-5 * size_ || along_v.Magnitude() * (v1 - v0) < 1e-5 * size_;
       is_pole_.push_back(is_pole);
       turned += !is_pole && normal.Magnitude() > 1e-3 * along_u.Magnitude() * along_v.Magnitude() &&
                 !(own.Dot(normal) > 0.5 * normal.Magnitude());
@@ -180,11 +175,7 @@ class Checker {
     if (edge.Orientation() != TopAbs_FORWARD && edge.Orientation() != TopAbs_REVERSED) return;
     const handle<Poly_PolygonOnTriangulation> polygon = BRep_Tool::PolygonOnTriangulation(edge, mesh, place);
     if (polygon.IsNull() && BRep_Tool::Degenerated(edge)) return;
-    if (polygon.IsNull()) {
-      double a,b; BRep_Tool::Range(edge,a,b); char text[200];
-      std::snprintf(text, sizeof text, "an edge has no polygon: %g %g degenerate %d orientation %d", a, b, BRep_Tool::Degenerated(edge), edge.Orientation());
-      return complain(text);
-    }
+    if (polygon.IsNull()) return complain("an edge has no polygon");
     ++facts_.polygons;
     if (!polygon->HasParameters()) return complain("a polygon has no parameters");
     Line line;
@@ -201,7 +192,7 @@ class Checker {
       const auto at = [&](int point) { return places_[static_cast<std::size_t>(polygon->Node(point))]; };
       if (at(k - 1) != at(k)) ++sides[std::minmax(at(k - 1), at(k))];
     }
-    if (!std::ranges::is_sorted(line.parameters, std::less_equal()) ) complain("parameters of a polygon do not grow");
+    if (!std::ranges::is_sorted(line.parameters, std::less_equal())) complain("parameters of a polygon do not grow");
     const double slack = 1e-6 * (to - from);
     if (std::abs(line.parameters.front() - from) > slack || std::abs(line.parameters.back() - to) > slack)
       complain("a polygon runs from " + std::to_string(line.parameters.front()) + " to " +
@@ -222,13 +213,7 @@ class Checker {
     const auto [known, is_new] = lines_.try_emplace({edge.TShape().get(), edge.Location().HashCode(1 << 30)}, line);
     if (is_new || BRep_Tool::Degenerated(edge)) return;
     const Line& other = known->second;
-    if (other.parameters != line.parameters) {
-      std::string t = "two faces along an edge have other parameters:";
-      for (double x : line.parameters) t += " " + std::to_string(x);
-      t += " |";
-      for (double x : other.parameters) t += " " + std::to_string(x);
-      return complain(t);
-    }
+    if (other.parameters != line.parameters) return complain("two faces along an edge have other parameters");
     double apart = 0, size = 0;
     for (std::size_t k = 0; k < line.points.size(); ++k) {
       apart = std::max(apart, line.points[k].Distance(other.points[k]));
@@ -241,13 +226,19 @@ class Checker {
   const TopoDS_Shape& shape_;
   const OcctMeshReport& report_;
   double size_ = 0;
-  std::vector<int> places_;     ///< by node of the face
+  std::vector<int> places_;    ///< by node of the face
   std::vector<bool> is_pole_;  ///< by node: parameters have no say there
   PolyFacts facts_;
   std::map<std::pair<const void*, int>, Line> lines_;
 };
 
 }  // namespace
+
+double size_of(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, false);
+  return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
+}
 
 PolyFacts check_polys(const TopoDS_Shape& shape, const OcctMeshReport& report) { return Checker(shape, report).run(); }
 
@@ -272,7 +263,9 @@ StlFacts stl_facts(const TopoDS_Shape& shape) {
     std::memcpy(&corner, &bytes[84 + 50 * k + 12], 36);
     for (Place& place : corner)
       for (float& value : place) value += 0.0f;  // -0 is 0
-    const auto at = [&](std::size_t c) { return gp_XYZ(double(corner[c][0]), double(corner[c][1]), double(corner[c][2])); };
+    const auto at = [&](std::size_t c) {
+      return gp_XYZ(double(corner[c][0]), double(corner[c][1]), double(corner[c][2]));
+    };
     facts.volume += at(0).Dot(at(1).Crossed(at(2))) / 6;
     facts.area += (at(1) - at(0)).Crossed(at(2) - at(0)).Modulus() / 2;
     for (std::size_t c = 0; c < 3; ++c)

@@ -11,6 +11,9 @@
 
 namespace tessera::test {
 
+/// The diagonal of a shape's box, whatever triangulations it has.
+double size_of(const TopoDS_Shape& shape);
+
 /// What was found in the triangulations of a shape.
 struct PolyFacts {
   std::size_t faces = 0, nodes = 0, triangles = 0, polygons = 0;

@@ -39,13 +39,13 @@ struct OcctMeshFault {
 
 /// A triangulation as it was stored.
 struct OcctMeshReport {
-  std::size_t faces = 0;             ///< with a triangulation; a face that stands at several places counts once
-  std::size_t nodes = 0;             ///< of all faces
-  std::size_t triangles = 0;         ///< of all faces
-  double bound = 0;                  ///< the largest distance of a face and its triangles, proven if `certified`
-  double gap = 0;                    ///< how far nodes left their faces in order to meet those of others
-  bool certified = true;             ///< false: a surface that only OpenCASCADE could convert was fitted by samples
-  double angle = 0;                  ///< the largest angle by which normals turn over a triangle, where bounded
+  std::size_t faces = 0;      ///< with a triangulation; a face that stands at several places counts once
+  std::size_t nodes = 0;      ///< of all faces
+  std::size_t triangles = 0;  ///< of all faces
+  double bound = 0;           ///< the largest distance of a face and its triangles, proven if `certified`
+  double gap = 0;             ///< how far nodes left their faces in order to meet those of others
+  bool certified = true;      ///< false: a surface that only OpenCASCADE could convert was fitted by samples
+  double angle = 0;           ///< the largest angle by which normals turn over a triangle, where bounded
   std::size_t patches_without_angle = 0;  ///< how many parts of faces have no such bound, at cusps for example
   /// Whether the triangulation has no border: each side of a triangle has another triangle. If not, `open_edges` and
   /// `faults` say where.

@@ -35,7 +35,7 @@ struct DescribedShape {
   std::vector<std::string> notes;         ///< what else the model lacks or changes, one sentence each
   /// How far along the surface a border may move where its curves are fitted, a length; 0: by rounding alone.
   double fit_tolerance = 0;
-  std::string contents;                   ///< for a file without faces: what it holds instead, or empty
+  std::string contents;  ///< for a file without faces: what it holds instead, or empty
 };
 
 /// The key of a shape in the maps; null for a null shape.

@@ -15,8 +15,8 @@ using opencascade::handle;
 
 class PolygonMaker {
  public:
-  PolygonMaker(const PatchSet& set, const FaceTriangulations& nodes,
-               std::span<const handle<Poly_Triangulation>> made, const OcctShape& sources)
+  PolygonMaker(const PatchSet& set, const FaceTriangulations& nodes, std::span<const handle<Poly_Triangulation>> made,
+               const OcctShape& sources)
       : set_(set), nodes_(nodes), made_(made), sources_(sources) {}
 
   /// Adds the polygons of an edge: all its vertices, by uses.
@@ -121,8 +121,8 @@ class PolygonMaker {
 }  // namespace
 
 std::vector<EdgePolygon> edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
-                                       std::span<const handle<Poly_Triangulation>> made,
-                                       const OcctShape& sources, std::span<const EdgeVertex> on_edges) {
+                                       std::span<const handle<Poly_Triangulation>> made, const OcctShape& sources,
+                                       std::span<const EdgeVertex> on_edges) {
   PolygonMaker maker(set, nodes, made, sources);
   for (std::size_t begin = 0, end = 0; begin < on_edges.size(); begin = end) {
     while (end < on_edges.size() && on_edges[end].edge == on_edges[begin].edge) ++end;

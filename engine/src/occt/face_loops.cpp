@@ -105,7 +105,8 @@ double fit_tolerance(const FaceBorder& border, const FaceBox& box, const Reparam
   TopLoc_Location location;
   const GeomAdaptor_Surface adaptor(bare_surface(BRep_Tool::Surface(border.face, location)));
   constexpr double slope = 0.94;
-  const double wide = slope * std::min(adaptor.UResolution(border.fit_tolerance), adaptor.VResolution(border.fit_tolerance));
+  const double wide =
+      slope * std::min(adaptor.UResolution(border.fit_tolerance), adaptor.VResolution(border.fit_tolerance));
   return std::clamp(wide, least, 1e-3 * std::min(d.u1 - d.u0, d.v1 - d.v0));
 }
 

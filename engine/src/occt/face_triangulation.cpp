@@ -123,8 +123,8 @@ class FaceTriangulations::Maker {
             of.v_at(double(mesh_.parameters[2 * std::size_t{vertex} + 1]))};
   }
   gp_Pnt2d their_parameters(const ParameterPoint& ours) const {
-    const std::array<double, 2> at = source_.to_occt(std::clamp(ours.u, domain_.u0, domain_.u1),
-                                                     std::clamp(ours.v, domain_.v0, domain_.v1));
+    const std::array<double, 2> at =
+        source_.to_occt(std::clamp(ours.u, domain_.u0, domain_.u1), std::clamp(ours.v, domain_.v0, domain_.v1));
     return {at[0], at[1]};
   }
   const float* position(std::uint32_t vertex) const { return &mesh_.positions[3 * std::size_t{vertex}]; }
@@ -166,7 +166,8 @@ class FaceTriangulations::Maker {
         Corners corners;
         for (std::size_t c = 0; c < 3; ++c) corners[c] = all_.same_[mesh_.indices[3 * t + c]];
         const auto [a, b, c] = corners;
-        if (a == b || b == c || c == a || have_one_place(a, b) || have_one_place(b, c) || have_one_place(c, a)) continue;
+        if (a == b || b == c || c == a || have_one_place(a, b) || have_one_place(b, c) || have_one_place(c, a))
+          continue;
         for (const std::uint32_t corner : corners) all_.nodes_[corner] = 1;
         triangles_.push_back(corners);
       }
@@ -182,7 +183,8 @@ class FaceTriangulations::Maker {
     const auto node = [&](std::uint32_t vertex) { return static_cast<int>(all_.nodes_[vertex]); };
     for (std::size_t k = 0; k < triangles_.size(); ++k) {
       const auto [a, b, c] = triangles_[k];
-      const Poly_Triangle made = swaps ? Poly_Triangle(node(a), node(c), node(b)) : Poly_Triangle(node(a), node(b), node(c));
+      const Poly_Triangle made =
+          swaps ? Poly_Triangle(node(a), node(c), node(b)) : Poly_Triangle(node(a), node(b), node(c));
       made_->SetTriangle(static_cast<int>(k) + 1, made);
     }
   }

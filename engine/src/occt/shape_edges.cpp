@@ -81,7 +81,7 @@ void ShapeEdges::read_edge(std::size_t k) {
 }
 
 Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs,
-                           double tolerance) const {
+                          double tolerance) const {
   Coedge out{no_id, edge.Orientation() == TopAbs_REVERSED, {}};
   const int index = maps_->edges.FindIndex(edge);
   if (index == 0) return out;

@@ -25,8 +25,7 @@ class ShapeEdges {
   /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`; `tolerance`: of
   /// state_parameter(). Its edge is
   /// no_id if the curve does not run along the edge from end to end.
-  Coedge coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs,
-                double tolerance) const;
+  Coedge coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs, double tolerance) const;
 
   /// Moves vertices and edges into a shape of ours, and says what they are made of.
   void give_to(Shape& shape, OcctShape& sources) &&;

@@ -206,8 +206,8 @@ class TurningSearch {
     const Turning bound = piece.bound();
     const AtCorners corners = piece.at_corners();
     if (std::max(corners.most.u, corners.most.v) > max_turning) bound_.is_finite_ = false;
-    const Turning& known = known_[at.i >> std::max(at.depth_u - rectangle_depth, 0)]
-                                 [at.j >> std::max(at.depth_v - rectangle_depth, 0)];
+    const Turning& known =
+        known_[at.i >> std::max(at.depth_u - rectangle_depth, 0)][at.j >> std::max(at.depth_v - rectangle_depth, 0)];
     const bool is_small = bound.u / scale.u + bound.v / scale.v <= few_cells * angle_;
     if (at.level == max_depth || is_small || !is_worth_cutting(at.level, bound, corners, known)) {
       take(bound, at);
