@@ -5,6 +5,7 @@
 #include <opencascade/BRepTools.hxx>
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Bnd_Box.hxx>
+#include <opencascade/Geom2d_Curve.hxx>
 #include <opencascade/Geom_Curve.hxx>
 #include <opencascade/Poly_PolygonOnTriangulation.hxx>
 #include <opencascade/Poly_Triangulation.hxx>
@@ -66,17 +67,43 @@ class Checker {
     ++facts_.faces;
     TopLoc_Location place;
     const handle<Poly_Triangulation> mesh = BRep_Tool::Triangulation(face, place);
+    if (mesh.IsNull() && is_faulty) return --facts_.faces, static_cast<void>(0);  // too thin
     if (mesh.IsNull()) return complain("it has no triangulation");
     facts_.nodes += static_cast<std::size_t>(mesh->NbNodes());
     facts_.triangles += static_cast<std::size_t>(mesh->NbTriangles());
     if (!mesh->HasUVNodes() || !mesh->HasNormals()) return complain("it has no parameters or normals");
     if (!(mesh->Deflection() > 0)) complain("it has no deflection");
+    find_rectangle(face);
     check_nodes(face, *mesh);
     std::map<Side, int> sides;
-    if (!check_triangles(face, *mesh, sides) || is_faulty) return;
+    if (!check_triangles(*mesh, sides) || is_faulty) return;
     for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next())
       check_edge(TopoDS::Edge(at.Current()), face, mesh, place, sides);
-    check_border(face, *mesh, sides);
+    if (!leaves_surface_) check_border(face, *mesh, sides);
+  }
+
+  /// Finds the rectangle of the face's border. OpenCASCADE's own misses what a periodic spline has behind its seam.
+  void find_rectangle(const TopoDS_Face& face) {
+    BRepTools::UVBounds(face, rectangle_[0], rectangle_[1], rectangle_[2], rectangle_[3]);
+    const BRepAdaptor_Surface whole(face, false);
+    const double du = whole.UResolution(1e-7 * size_), dv = whole.VResolution(1e-7 * size_);
+    constexpr int samples = 512;  // to within 1e-5 of the rectangle, where curves are smooth
+    leaves_surface_ = false;
+    for (TopExp_Explorer at(face, TopAbs_EDGE); at.More(); at.Next()) {
+      double from = 0, to = 0;
+      const handle<Geom2d_Curve> curve = BRep_Tool::CurveOnSurface(TopoDS::Edge(at.Current()), face, from, to);
+      if (curve.IsNull()) continue;
+      for (int k = 0; k <= samples; ++k) {
+        const gp_Pnt2d point = curve->Value(from + (to - from) * k / samples);
+        rectangle_ = {std::min(rectangle_[0], point.X()), std::max(rectangle_[1], point.X()),
+                      std::min(rectangle_[2], point.Y()), std::max(rectangle_[3], point.Y())};
+        leaves_surface_ = leaves_surface_ ||
+                          (!whole.IsUPeriodic() &&
+                           (point.X() < whole.FirstUParameter() - du || point.X() > whole.LastUParameter() + du)) ||
+                          (!whole.IsVPeriodic() &&
+                           (point.Y() < whole.FirstVParameter() - dv || point.Y() > whole.LastVParameter() + dv));
+      }
+    }
   }
 
   /// Each side has two triangles, or one and an edge, or edges alone where two run over each other. Lines that close
@@ -102,12 +129,8 @@ class Checker {
   void check_nodes(const TopoDS_Face& face, const Poly_Triangulation& mesh) {
     const BRepAdaptor_Surface surface(face);
     const gp_Trsf place = face.Location().Transformation();
-    double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-    BRepTools::UVBounds(face, u0, u1, v0, v1);
-    // Its rectangle misses what a periodic spline has behind its seam.
-    if (surface.IsUPeriodic() && u1 - u0 > 0.5 * surface.UPeriod()) u1 = std::max(u1, u0 + surface.UPeriod());
-    if (surface.IsVPeriodic() && v1 - v0 > 0.5 * surface.VPeriod()) v1 = std::max(v1, v0 + surface.VPeriod());
-    const double du = 1e-6 * (u1 - u0) + surface.UResolution(1e-4), dv = 1e-6 * (v1 - v0) + surface.VResolution(1e-4);
+    const auto [u0, u1, v0, v1] = rectangle_;
+    const double du = 1e-5 * (u1 - u0) + surface.UResolution(1e-4), dv = 1e-5 * (v1 - v0) + surface.VResolution(1e-4);
     is_pole_.assign(1, false);
     std::size_t outside = 0, far = 0, turned = 0;
     for (int k = 1; k <= mesh.NbNodes(); ++k) {
@@ -134,12 +157,10 @@ class Checker {
     if (turned > 0) complain(std::to_string(turned) + " normals are not those of the surface");
   }
 
-  bool check_triangles(const TopoDS_Face& face, const Poly_Triangulation& mesh, std::map<Side, int>& sides) {
-    double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-    BRepTools::UVBounds(face, u0, u1, v0, v1);
-    const auto scaled = [&](int from, int to) {
+  bool check_triangles(const Poly_Triangulation& mesh, std::map<Side, int>& sides) {
+    const auto scaled = [&, u = rectangle_[1] - rectangle_[0], v = rectangle_[3] - rectangle_[2]](int from, int to) {
       const gp_Vec2d way(mesh.UVNode(from), mesh.UVNode(to));
-      return gp_Vec2d(way.X() / (u1 - u0), way.Y() / (v1 - v0));
+      return gp_Vec2d(way.X() / u, way.Y() / v);
     };
     std::size_t turned = 0, flat = 0;
     find_places(mesh);
@@ -226,8 +247,10 @@ class Checker {
   const TopoDS_Shape& shape_;
   const OcctMeshReport& report_;
   double size_ = 0;
-  std::vector<int> places_;    ///< by node of the face
-  std::vector<bool> is_pole_;  ///< by node: parameters have no say there
+  std::array<double, 4> rectangle_{};  ///< of the face's border: u from, to; v from, to
+  bool leaves_surface_ = false;        ///< whether the border leaves the surface, so that a part of it is cut off
+  std::vector<int> places_;            ///< by node of the face
+  std::vector<bool> is_pole_;          ///< by node: parameters have no say there
   PolyFacts facts_;
   std::map<std::pair<const void*, int>, Line> lines_;
 };

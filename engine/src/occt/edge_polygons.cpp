@@ -2,11 +2,14 @@
 
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Geom2d_Curve.hxx>
+#include <opencascade/Geom_Curve.hxx>
 #include <opencascade/TopoDS.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "tessera/topology.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -31,7 +34,20 @@ class PolygonMaker {
     }
   }
 
-  std::vector<EdgePolygon> finish() && { return std::move(all_); }
+  /// Looks for edges without a polygon: those that are points of the mesh get the node of a vertex there.
+  EdgePolygons finish(const Shape& shape) && {
+    const std::size_t known = all_.size();
+    for (std::uint32_t face = 0; face < shape.faces.size(); ++face) {
+      if (made_[face].IsNull()) continue;
+      for (const TrimLoop& loop : edge_loops(shape.faces[face]))
+        for (const Coedge& coedge : loop.coedges)
+          if (!shape.edges[coedge.edge].degenerate && !has_polygon(coedge.edge, face, known))
+            add_point(shape, coedge.edge, face, known);
+    }
+    std::ranges::sort(lacking_);
+    lacking_.erase(std::ranges::unique(lacking_).begin(), lacking_.end());
+    return {std::move(all_), std::move(lacking_)};
+  }
 
  private:
   struct Point {
@@ -49,8 +65,7 @@ class PolygonMaker {
     }
     if (points_.empty()) return;
     fill();
-    const handle<Poly_PolygonOnTriangulation> polygon = polygon_of(sources_.edges[edge]);
-    polygon->Deflection(made_[face]->Deflection());
+    const handle<Poly_PolygonOnTriangulation> polygon = polygon_of(edge, face);
     // Uses are in the order of faces, so those of a seam follow each other.
     if (!all_.empty() && all_.back().edge == edge && all_.back().face == face) {
       if (all_.back().second.IsNull()) add_second(all_.back(), polygon);
@@ -76,7 +91,8 @@ class PolygonMaker {
     points_ = std::move(all);
   }
 
-  handle<Poly_PolygonOnTriangulation> polygon_of(const OcctEdge& edge) const {
+  handle<Poly_PolygonOnTriangulation> polygon_of(std::uint32_t of, std::uint32_t face) {
+    const OcctEdge& edge = sources_.edges[of];
     const auto count = static_cast<int>(points_.size());
     const handle<Poly_PolygonOnTriangulation> polygon = new Poly_PolygonOnTriangulation(count, true);
     for (int k = 0; k < count; ++k) {
@@ -90,7 +106,55 @@ class PolygonMaker {
     const bool is_point = points_[0].s == points_.back().s;
     if (is_point || polygon->Parameter(1) - from <= near) polygon->SetParameter(1, from);
     if (is_point || to - polygon->Parameter(count) <= near) polygon->SetParameter(count, to);
+    if (polygon->Parameter(1) > from || polygon->Parameter(count) < to) lacking_.push_back(face);
+    polygon->Deflection(std::max(made_[face]->Deflection(), distance(edge, face, *polygon)));
     return polygon;
+  }
+
+  /// Returns the largest distance of the nodes of a polygon from the edge's own curve; 0 if it has none.
+  double distance(const OcctEdge& edge, std::uint32_t face, const Poly_PolygonOnTriangulation& polygon) const {
+    TopLoc_Location place;
+    double from = 0, to = 0;
+    const handle<Geom_Curve> curve = BRep_Tool::Curve(edge.edge, place, from, to);
+    if (curve.IsNull()) return 0;
+    const TopLoc_Location between = sources_.faces[face].face.Location().Predivided(place);
+    const bool moves = !between.IsIdentity();
+    const gp_Trsf move = between.Transformation();
+    double most = 0;
+    gp_Pnt on_curve;
+    for (int k = 1; k <= polygon.NbNodes(); ++k) {
+      curve->D0(polygon.Parameter(k), on_curve);
+      gp_Pnt node = made_[face]->Node(polygon.Node(k));
+      if (moves) node.Transform(move);
+      most = std::max(most, on_curve.SquareDistance(node));
+    }
+    return std::sqrt(most);
+  }
+
+  bool has_polygon(std::uint32_t edge, std::uint32_t face, std::size_t known) const {
+    const auto key = [](const EdgePolygon& of) { return std::pair(of.edge, of.face); };
+    return std::ranges::binary_search(std::span(all_).first(known), std::pair(edge, face), {}, key);
+  }
+  /// The node at a vertex of the shape in a face: an end of another edge's polygon; 0 if there is none.
+  int node_at(const Shape& shape, std::uint32_t vertex, std::uint32_t face, std::size_t known) const {
+    if (vertex == no_id) return 0;
+    for (const EdgePolygon& one : std::span(all_).first(known)) {
+      if (one.face != face) continue;
+      if (shape.edges[one.edge].start == vertex) return one.first->Node(1);
+      if (shape.edges[one.edge].end == vertex) return one.first->Node(one.first->NbNodes());
+    }
+    return 0;
+  }
+  /// Adds the polygon of an edge without vertices of its own, if it is no longer than its tolerance.
+  void add_point(const Shape& shape, std::uint32_t edge, std::uint32_t face, std::size_t known) {
+    const int start = node_at(shape, shape.edges[edge].start, face, known),
+              end = node_at(shape, shape.edges[edge].end, face, known);
+    const double most = 2 * BRep_Tool::Tolerance(sources_.edges[edge].edge);
+    const bool is_point = start > 0 && end > 0 && made_[face]->Node(start).Distance(made_[face]->Node(end)) <= most;
+    if (!is_point) return lacking_.push_back(face);
+    const Interval& range = shape.edges[edge].range;
+    points_ = {{range.from, start}, {range.to, end}};
+    all_.push_back({edge, face, polygon_of(edge, face), {}});
   }
 
   /// Adds the other polygon of a seam: the first one becomes that of the forward edge.
@@ -116,19 +180,20 @@ class PolygonMaker {
   std::vector<double> stations_;  ///< of all uses of the edge
   std::vector<Point> points_;     ///< of a use
   std::vector<EdgePolygon> all_;
+  std::vector<std::uint32_t> lacking_;
 };
 
 }  // namespace
 
-std::vector<EdgePolygon> edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
-                                       std::span<const handle<Poly_Triangulation>> made, const OcctShape& sources,
-                                       std::span<const EdgeVertex> on_edges) {
+EdgePolygons edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
+                           std::span<const handle<Poly_Triangulation>> made, const Shape& shape,
+                           const OcctShape& sources, std::span<const EdgeVertex> on_edges) {
   PolygonMaker maker(set, nodes, made, sources);
   for (std::size_t begin = 0, end = 0; begin < on_edges.size(); begin = end) {
     while (end < on_edges.size() && on_edges[end].edge == on_edges[begin].edge) ++end;
     maker.add(on_edges.subspan(begin, end - begin));
   }
-  return std::move(maker).finish();
+  return std::move(maker).finish(shape);
 }
 
 }}  // namespace tessera::abi_0_1

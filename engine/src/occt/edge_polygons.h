@@ -21,11 +21,19 @@ struct EdgePolygon {
   opencascade::handle<Poly_PolygonOnTriangulation> first, second;
 };
 
-/// Makes the polygons of all edges, by edges and faces. `on_edges`: as Tessellation::edge_vertices() lists them;
-/// `made`: `[face]`, from `nodes`. An edge that a face without a triangulation has gets none there. May throw
-/// Standard_Failure.
-std::vector<EdgePolygon> edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
-                                       std::span<const opencascade::handle<Poly_Triangulation>> made,
-                                       const OcctShape& sources, std::span<const EdgeVertex> on_edges);
+/// The polygons of all edges.
+struct EdgePolygons {
+  std::vector<EdgePolygon> polygons;   ///< by edges, then faces
+  std::vector<std::uint32_t> lacking;  ///< faces, by growing number: an edge has none there, or a part of one
+};
+
+/// Makes the polygons of all edges of a shape. The deflection of a polygon is that of its face, or the largest distance
+/// of its nodes from the edge's own curve if that is larger.
+///
+/// `on_edges`: as Tessellation::edge_vertices() lists them; `made`: `[face]`, from `nodes`. An edge that a face without
+/// a triangulation has gets none there. May throw Standard_Failure.
+EdgePolygons edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
+                           std::span<const opencascade::handle<Poly_Triangulation>> made, const Shape& shape,
+                           const OcctShape& sources, std::span<const EdgeVertex> on_edges);
 
 }}  // namespace tessera::abi_0_1
