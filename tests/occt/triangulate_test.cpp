@@ -204,6 +204,15 @@ TEST(Triangulate, ResultDoesNotDependOnThreads) {
   }
 }
 
+/// Deflections that floats cannot keep take nodes in double.
+TEST(Triangulate, TinyDeflectionsAreKept) {
+  const TopoDS_Shape shape = BRepPrimAPI_MakeCylinder(1, 1e4).Shape();
+  const OcctMeshReport report = value_of(triangulate(shape, {.deflection = 1e-6}));
+  EXPECT_LE(report.bound, 1e-6);
+  EXPECT_TRUE(report.closed && report.faults.empty());
+  expect_good(shape, report, "long cylinder");
+}
+
 TEST(Triangulate, AnglesAreKept) {
   const TopoDS_Shape shape = BRepPrimAPI_MakeCylinder(1, 1).Shape();
   EXPECT_LT(value_of(triangulate(shape, {.deflection = 10, .angle = {}})).triangles, 40u);

@@ -127,18 +127,33 @@ class FaceTriangulations::Maker {
         source_.to_occt(std::clamp(ours.u, domain_.u0, domain_.u1), std::clamp(ours.v, domain_.v0, domain_.v1));
     return {at[0], at[1]};
   }
-  const float* position(std::uint32_t vertex) const { return &mesh_.positions[3 * std::size_t{vertex}]; }
+  /// Calls with(p) for the coordinates of a vertex as the mesh has them: in double, or in float relative to its origin.
+  template <class With>
+  auto with_position(std::uint32_t vertex, With with) const {
+    const std::size_t at = 3 * std::size_t{vertex};
+    return mesh_.model_positions.empty() ? with(&mesh_.positions[at]) : with(&mesh_.model_positions[at]);
+  }
   bool have_one_place(std::uint32_t a, std::uint32_t b) const {
-    const float *p = position(a), *q = position(b);
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+    const std::ptrdiff_t other = 3 * (std::ptrdiff_t{b} - std::ptrdiff_t{a});
+    return with_position(
+        a, [&](const auto* p) { return p[0] == p[other] && p[1] == p[other + 1] && p[2] == p[other + 2]; });
+  }
+  gp_Pnt position(std::uint32_t vertex) const {
+    const Vec3 origin = mesh_.model_positions.empty() ? mesh_.origin : Vec3{};
+    return with_position(vertex, [&](const auto* p) {
+      return gp_Pnt(origin.x + double(p[0]), origin.y + double(p[1]), origin.z + double(p[2]));
+    });
   }
   bool is_pole(std::uint32_t vertex) const {
     return std::ranges::any_of(poles_, [&](std::uint32_t pole) { return have_one_place(pole, vertex); });
   }
   std::size_t hash(std::uint32_t vertex) const {
-    std::uint64_t sum = 0;
-    for (int c = 0; c < 3; ++c)
-      sum = (sum ^ std::bit_cast<std::uint32_t>(position(vertex)[c] + 0.0f)) * 0x9E3779B97F4A7C15u;  // -0 is 0
+    const std::uint64_t sum = with_position(vertex, [](const auto* p) {
+      std::uint64_t of = 0;
+      for (int c = 0; c < 3; ++c)
+        of = (of ^ std::bit_cast<std::uint64_t>(double(p[c]) + 0.0)) * 0x9E3779B97F4A7C15u;  // -0 is 0
+      return of ^ (of >> 31);
+    });
     return static_cast<std::size_t>(sum ^ (sum >> 29));
   }
   /// Whether vertices are one node: those of patches that meet, whose parameters differ by rounding, and those on edges
@@ -198,8 +213,8 @@ class FaceTriangulations::Maker {
     for_vertices([&](std::uint32_t patch, std::uint32_t k) {
       if (all_.same_[k] != k || all_.nodes_[k] == 0) return;
       const int node = static_cast<int>(all_.nodes_[k]);
-      const float *p = position(k), *n = &mesh_.normals[3 * std::size_t{k}];
-      gp_Pnt at(mesh_.origin.x + double(p[0]), mesh_.origin.y + double(p[1]), mesh_.origin.z + double(p[2]));
+      const float* const n = &mesh_.normals[3 * std::size_t{k}];
+      gp_Pnt at = position(k);
       gp_Vec3f normal(sign * n[0], sign * n[1], sign * n[2]);
       if (moves) {
         at.Transform(back);

@@ -86,7 +86,7 @@ class Triangulator {
     if (!set) return set.status();
     const Result<TessellationOptions> wanted = plan_options(*set);
     if (!wanted) return wanted.status();
-    const Result<Tessellation> plan = Tessellation::make(*set, *wanted, progress_.loops());
+    const Result<Tessellation> plan = make_plan(*set, *wanted);
     if (!plan) return plan.status();
     Result<Mesh> mesh = plan->allocate();
     if (!mesh) return mesh.status();
@@ -139,6 +139,18 @@ class Triangulator {
       if (!(tolerance > 0)) tolerance = largest > 0 ? largest : options_.deflection;
     to.surface_tolerances.assign(tolerances_.begin(), tolerances_.begin() + std::ptrdiff_t(set.surface_count()));
     return to;
+  }
+
+  /// Makes a plan; where floats do not keep the deflection, one of positions in double.
+  Result<Tessellation> make_plan(const PatchSet& set, TessellationOptions wanted) {
+    Result<Tessellation> plan = Tessellation::make(set, wanted, progress_.loops());
+    const bool is_refused = !plan && plan.status().code() == StatusCode::invalid_argument;
+    if (!is_refused && (!plan || plan->patches_beyond_tolerance().empty())) return plan;
+    // Rounding takes most of the deflection, if anything does.
+    const double rounding = 0x1p-20 * set.model_box().diagonal();
+    if (*std::ranges::min_element(tolerances_) > rounding) return plan;
+    wanted.precision = Precision::double_precision;
+    return Tessellation::make(set, wanted, {.cancel = progress_.loops().cancel});
   }
 
   Status for_faces(FunctionRef<Status(std::size_t)> body) {
