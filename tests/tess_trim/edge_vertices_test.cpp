@@ -30,7 +30,7 @@ void expect_shared_lines(const Shape& shape, const TessellationOptions& options)
   const PatchSet set = value_of(make_patch_set(shape));
   const Tessellation plan = value_of(Tessellation::make(set, options));
   const Mesh mesh = value_of(plan.run(set));
-  const std::vector<EdgeVertex> all = value_of(plan.edge_vertices());
+  const std::vector<EdgeVertex> all = value_of(edge_vertices(plan));
   const auto order = [](const EdgeVertex& of) { return std::tuple(of.edge, of.use, of.s); };
   EXPECT_TRUE(std::ranges::is_sorted(all, {}, order));
   const EdgeUses uses = value_of(edge_uses(shape));
@@ -81,7 +81,7 @@ TEST(EdgeVertices, NeighboursAreSidesOfTriangles) {
       const std::uint32_t a = mesh.indices[t + c], b = mesh.indices[t + (c + 1) % 3];
       sides.insert(std::minmax(a, b));
     }
-  const std::vector<EdgeVertex> all = value_of(plan.edge_vertices());
+  const std::vector<EdgeVertex> all = value_of(edge_vertices(plan));
   std::size_t checked = 0;
   for (std::size_t k = 1; k < all.size(); ++k)
     if (all[k].use == all[k - 1].use) {
@@ -93,13 +93,13 @@ TEST(EdgeVertices, NeighboursAreSidesOfTriangles) {
 
 TEST(EdgeVertices, AreListedOnlyWhereAskedFor) {
   const PatchSet set = value_of(make_patch_set(joined(drilled_plate(), 1e-6)));
-  EXPECT_TRUE(value_of(value_of(Tessellation::make(set, {.tolerance = small})).edge_vertices()).empty());
-  EXPECT_TRUE(
-      value_of(
-          value_of(Tessellation::make(set, {.tolerance = small, .joining = {.edge_vertices = true}})).edge_vertices())
-          .size() > 8);
-  TessellationOptions options{.tolerance = small, .joining = {.close_edges = false, .edge_vertices = true}};
-  EXPECT_TRUE(value_of(value_of(Tessellation::make(set, options)).edge_vertices()).empty());
+  const auto count = [&](const Joining& joining) {
+    const TessellationOptions options{.tolerance = small, .joining = joining};
+    return value_of(edge_vertices(value_of(Tessellation::make(set, options)))).size();
+  };
+  EXPECT_EQ(count({}), 0u);
+  EXPECT_GT(count({.edge_vertices = true}), 8u);
+  EXPECT_EQ(count({.close_edges = false, .edge_vertices = true}), 0u);
 }
 
 }}  // namespace tessera::test

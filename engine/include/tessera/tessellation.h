@@ -140,13 +140,6 @@ class Tessellation {
   /// Model::instances. About 0 where faces meet; of edges that max_gap leaves open, half of their faces' distance.
   /// Empty if no loop of the set names edges.
   std::span<const float> edge_gaps() const;
-  /// Returns the vertices along the edges of shapes, by edges, then uses, then growing s: each use of a closed edge has
-  /// vertices at the same parameters, whose positions are the same bits. Where patches of one face meet, each has a
-  /// vertex at that parameter, unless the mesh shares vertices. A degenerate edge has one vertex, at both ends.
-  ///
-  /// Empty unless Joining::edge_vertices is set. Edges that max_gap leaves open, or that loops leave in part, may have
-  /// fewer vertices in one face than in another. Errors: out_of_memory. Memory: 24 bytes per vertex, kept by the plan.
-  Result<std::vector<EdgeVertex>> edge_vertices() const;
   /// Returns how many borders were joined by welding and not by their bits, those that became points among them.
   std::size_t welded_borders() const;
   /// Returns how many edges of triangles lie on borders that are joined to no other. check() counts fewer where such
@@ -253,6 +246,14 @@ class Tessellation {
 /// Returns Tessellation::bound() of the patches that the view of a plan of pixels sees, those whose pixel_bounds() are
 /// above 0. Without pixels it is bound().
 double seen_bound(const Tessellation& plan);
+
+/// Returns the vertices along the edges of shapes, by edges, then uses, then growing s: each use of a closed edge has
+/// vertices at the same parameters, whose positions are the same bits. Where patches of one face meet, each has a
+/// vertex at that parameter, unless the mesh shares vertices. A degenerate edge has one vertex, at both ends.
+///
+/// Empty unless Joining::edge_vertices is set. Edges that max_gap leaves open, or that loops leave in part, may have
+/// fewer vertices in one face than in another. Errors: out_of_memory. Memory: 24 bytes per vertex, kept by the plan.
+Result<std::vector<EdgeVertex>> edge_vertices(const Tessellation& plan);
 
 /// Returns Mesh::parts by surfaces: one part for each run of triangles and quads whose patches come from one surface.
 ///

@@ -82,7 +82,7 @@ struct Joining {
   bool close_edges = true;
   /// Shapes: edges along which the points of faces are farther apart than this stay open. A length, at least 0.
   std::optional<double> max_gap = {};
-  /// Shapes: whether the plan lists the vertices along edges, for Tessellation::edge_vertices(). Needs `close_edges`.
+  /// Shapes: whether the plan lists the vertices along edges, for edge_vertices(). Needs `close_edges`.
   bool edge_vertices = false;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-// Every public header but ray_embree.h, mpi.h, occt.h and occt_mesh.h, which include the headers of Embree, MPI and OpenCASCADE.
+// Every public header but ray_embree.h, mpi.h, occt.h and occt_mesh.h, which include the headers of Embree, MPI and
+// OpenCASCADE.
 //
 // Unless a comment says otherwise: arguments are not kept, and results own their memory. Threads: any number of calls
 // at once, on different objects or on const ones; work runs in the caller's TBB arena.

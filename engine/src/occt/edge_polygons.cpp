@@ -74,8 +74,8 @@ class PolygonMaker {
     }
   }
 
-  /// Adds the stations that this use lacks but others have, at the nodes nearest to them, so that all uses have as many:
-  /// a loop may leave the face just before the edge ends.
+  /// Adds the stations that this use lacks but others have, at the nodes nearest to them, so that all uses have as
+  /// many: a loop may leave the face just before the edge ends.
   void fill() {
     const double near = 1e-3 * (stations_.back() - stations_.front());
     std::vector<Point> all;

@@ -30,7 +30,7 @@ struct EdgePolygons {
 /// Makes the polygons of all edges of a shape. The deflection of a polygon is that of its face, or the largest distance
 /// of its nodes from the edge's own curve if that is larger.
 ///
-/// `on_edges`: as Tessellation::edge_vertices() lists them; `made`: `[face]`, from `nodes`. An edge that a face without
+/// `on_edges`: as edge_vertices() lists them; `made`: `[face]`, from `nodes`. An edge that a face without
 /// a triangulation has gets none there. May throw Standard_Failure.
 EdgePolygons edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
                            std::span<const opencascade::handle<Poly_Triangulation>> made, const Shape& shape,

@@ -96,8 +96,8 @@ Status append_edge(const BorderEdge& border, const SurfaceSides& sides, const Re
   return {};
 }
 
-/// How far a fitted curve may lie from its own, in our parameters: along arcs, these grow at 0.94 to 1.12 times the rate
-/// of OpenCASCADE's.
+/// How far a fitted curve may lie from its own, in our parameters: along arcs, these grow at 0.94 to 1.12 times the
+/// rate of OpenCASCADE's.
 double fit_tolerance(const FaceBorder& border, const FaceBox& box, const Reparametrization& parameters) {
   const Domain& d = box.domain;
   const double least = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);

@@ -17,8 +17,8 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// Makes the triangulations of the faces that a set is made of. A face has one node where vertices have the same
-/// position, but two along a seam, where parameters differ by the range of the face. Vertices that no triangle and no edge has are left out,
-/// and so are triangles two of whose corners are one position.
+/// position, but two along a seam, where parameters differ by the range of the face. Vertices that no triangle and no
+/// edge has are left out, and so are triangles two of whose corners are one position.
 ///
 /// Threads: any number of calls of make() at once, each of a face of its own.
 class FaceTriangulations {

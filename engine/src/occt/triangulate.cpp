@@ -158,7 +158,7 @@ class Triangulator {
   }
 
   Status put(const PatchSet& set, const Tessellation& plan, const Mesh& mesh) {
-    const Result<std::vector<EdgeVertex>> on_edges = plan.edge_vertices();
+    const Result<std::vector<EdgeVertex>> on_edges = edge_vertices(plan);
     if (!on_edges) return on_edges.status();
     FaceTriangulations triangulations(set, plan, mesh, *on_edges, shape_, sources_);
     std::vector<handle<Poly_Triangulation>> made(sources_.faces.size());

@@ -159,14 +159,9 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .crossed = plan_.patches().rare->crossed,
           .beyond = plan_.patches().rare->beyond,
           .gap = plan_.closed() ? plan_.closed()->gap : 0,
-          .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>()};
-}
-
-std::vector<EdgeVertex> ProvenMesh::edge_vertices() const {
-  std::vector<EdgeVertex> all;
-  if (plan_.closed()) all = plan_.closed()->edge_vertices;
-  for (EdgeVertex& one : all) one.vertex += static_cast<std::uint32_t>(plan_.first_vertex(one.patch));
-  return all;
+          .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>(),
+          .edge_vertices = plan_.closed() ? std::span<const EdgeVertex>(plan_.closed()->edge_vertices)
+                                          : std::span<const EdgeVertex>()};
 }
 
 Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution) {

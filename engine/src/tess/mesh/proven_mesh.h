@@ -42,7 +42,6 @@ class ProvenMesh final : public Tessellation::Impl {
   bool has_f64_positions() const { return plan_.patches().has_f64_positions; }
 
   Proof proof() const override;
-  std::vector<EdgeVertex> edge_vertices() const override;
   MeshCapacity capacity() const override { return before(plan_.patch_count()); }
   MeshCapacity before(std::size_t patch) const override {
     if (!options_.quads) return {plan_.first_vertex(patch), plan_.first_triangle(patch), 0};

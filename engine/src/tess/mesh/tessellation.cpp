@@ -26,6 +26,13 @@ double largest(std::span<const float> values) {
 Tessellation::Impl::Impl() = default;
 Tessellation::Impl::~Impl() = default;
 
+std::vector<EdgeVertex> Tessellation::Impl::edge_vertices() const {
+  const Proof proof = this->proof();
+  std::vector<EdgeVertex> all(proof.edge_vertices.begin(), proof.edge_vertices.end());
+  for (EdgeVertex& one : all) one.vertex += static_cast<std::uint32_t>(before(one.patch).vertices);
+  return all;
+}
+
 void Tessellation::Impl::follow(const PatchSet& set) { identity_ = impl_of(set).identity; }
 
 Status Tessellation::Impl::check_set(const PatchSet& set) const {
@@ -69,9 +76,6 @@ std::size_t Tessellation::patches_without_angle() const {
 std::span<const float> Tessellation::angles() const { return impl_->proof().angles; }
 double Tessellation::gap() const { return impl_->proof().gap; }
 std::span<const float> Tessellation::edge_gaps() const { return impl_->proof().edge_gaps; }
-Result<std::vector<EdgeVertex>> Tessellation::edge_vertices() const {
-  return guarded([&]() -> Result<std::vector<EdgeVertex>> { return impl_->edge_vertices(); });
-}
 double Tessellation::pixels() const { return largest(impl_->proof().pixels); }
 std::span<const float> Tessellation::pixel_bounds() const { return impl_->proof().pixels; }
 std::size_t Tessellation::welded_borders() const { return impl_->proof().welded_borders; }
@@ -138,6 +142,10 @@ Result<MeshChange> Tessellation::update(PatchSet& set, std::span<const SurfaceEd
     if (Status status = impl_->check_set(set); !status.ok()) return status;
     return impl_->update_surfaces(set, edits, out, execution);
   });
+}
+
+Result<std::vector<EdgeVertex>> edge_vertices(const Tessellation& plan) {
+  return guarded([&]() -> Result<std::vector<EdgeVertex>> { return impl_of(plan).edge_vertices(); });
 }
 
 double seen_bound(const Tessellation& plan) {

@@ -21,6 +21,7 @@ class Tessellation::Impl {
     std::span<const std::uint32_t> crossed = {}, beyond = {};
     double gap = 0;
     std::span<const float> edge_gaps = {};
+    std::span<const EdgeVertex> edge_vertices = {};  ///< each `vertex` is one of its patch
   };
 
   Impl();
@@ -34,7 +35,7 @@ class Tessellation::Impl {
   Status check_set(const PatchSet& set) const;
 
   virtual Proof proof() const { return {}; }
-  virtual std::vector<EdgeVertex> edge_vertices() const { return {}; }
+  virtual std::vector<EdgeVertex> edge_vertices() const;
   virtual MeshCapacity capacity() const = 0;
   virtual MeshCapacity before(std::size_t patch) const = 0;
   virtual Mesh allocate() const = 0;

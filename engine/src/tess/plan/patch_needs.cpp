@@ -89,12 +89,14 @@ Status PatchNeeds::bound_views(const Execution& execution) {
       return status;
   }
   if (!options_.angle || !options_.keeps_bounds) return {};
-  turnings_.resize(shapes_.size());
+  std::vector<NormalTurning> found(shapes_.size());
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      if (!shapes_[k].is_curve) turnings_[k] = find_turning(k);
+      if (!shapes_[k].is_curve) found[k] = turning_of(k);
   };
-  return parallel_for(shapes_.size(), patches_per_task, execution, bound);
+  const Status status = parallel_for(shapes_.size(), patches_per_task, execution, bound);
+  turnings_ = std::move(found);
+  return status;
 }
 
 void PatchNeeds::bound_pictures(std::size_t block) {
@@ -104,7 +106,8 @@ void PatchNeeds::bound_pictures(std::size_t block) {
   ScreenSpaceBound::find(*options_.camera, *set_, block, moved, options_.pixels, pictures_.data());
 }
 
-PatchNeeds::NormalTurning PatchNeeds::find_turning(std::size_t patch) const {
+PatchNeeds::NormalTurning PatchNeeds::turning_of(std::size_t patch) const {
+  if (!turnings_.empty()) return turnings_[patch];
   const auto is_made_pole = [&](Side side) {  // by welding
     return !welded_poles_.empty() && welded_poles_[patch].has(side);
   };

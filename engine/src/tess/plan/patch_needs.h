@@ -93,15 +93,12 @@ class PatchNeeds {
     bool is_certified = true;
   };
   /// Returns the bound of a patch, which is found anew each time unless PlannerOptions::keeps_bounds.
-  NormalTurning turning_of(std::size_t patch) const {
-    return turnings_.empty() ? find_turning(patch) : turnings_[patch];
-  }
+  NormalTurning turning_of(std::size_t patch) const;
 
   /// Returns the segments that keep all limits, at rates up to `most`.
   NeededSegments segments_for(std::size_t patch, const PlanRequest& request, int most) const;
 
  private:
-  NormalTurning find_turning(std::size_t patch) const;
   /// Replaces rates that keep the limits by segments with fewer cells, or by kept ones that keep theirs.
   ProvenSegments settle(std::size_t patch, const CellLimits& limits, const CellLimits& kept_limits, int min_rate,
                         const PlanRequest& request, Rates rates) const;
