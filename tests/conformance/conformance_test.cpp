@@ -52,8 +52,6 @@ const std::map<std::string, std::vector<std::string>> warned{
     {"rib_aqsis/vase.rib", {":23: 3 worlds share one space", "requests that are skipped"}},
     // Offset surfaces.
     {"iges_nist_benchmarks/140-000.igs", {"1 surface fitted by splines"}},
-    {"step_brlcad_edge/ap214_offset_extrusion.stp", {"1 surface fitted by splines"}},
-    {"step_brlcad_edge/ap214_offset_revolution.stp", {"1 surface fitted by splines"}},
     // D171 is a conic, not a surface.
     {"iges_nist_benchmarks/nentity.igs", {"OpenCASCADE: D171", "1 surface fitted"}},
 };

@@ -5,6 +5,7 @@
 #include <opencascade/BRepBuilderAPI_MakeFace.hxx>
 #include <opencascade/BRepMesh_IncrementalMesh.hxx>
 #include <opencascade/BRepPrimAPI_MakeBox.hxx>
+#include <opencascade/BRepPrimAPI_MakeCylinder.hxx>
 #include <opencascade/BRepPrimAPI_MakeSphere.hxx>
 #include <opencascade/BRep_Builder.hxx>
 #include <opencascade/BRep_Tool.hxx>
@@ -13,8 +14,10 @@
 #include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Compound.hxx>
+#include <opencascade/TopoDS_Wire.hxx>
 
 #include <atomic>
+#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
@@ -112,6 +115,41 @@ TEST(TriangulateRefusals, FacesWithoutSurfacesKeepTheirTriangles) {
   TopLoc_Location place;
   EXPECT_EQ(BRep_Tool::Triangulation(of_triangles, place), triangle);
   EXPECT_TRUE(BRep_Tool::Triangulation(plane, place).IsNull());
+}
+
+/// Edges that run around a circle many times would take time and memory by their number of turns.
+TEST(TriangulateRefusals, EdgesThatRunAroundForEver) {
+  for (const double turns : {1e5, 1e11, 1e300}) {
+    const TopoDS_Shape shape = BRepPrimAPI_MakeCylinder(1, 1).Shape();
+    for (TopExp_Explorer edge(shape, TopAbs_EDGE); edge.More(); edge.Next())
+      BRep_Builder().Range(TopoDS::Edge(edge.Current()), 0, turns);
+    const auto begin = std::chrono::steady_clock::now();
+    (void)triangulate(shape, {.deflection = 0.1});
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << turns;
+  }
+}
+
+/// An edge without a curve of any kind within a face.
+TEST(TriangulateRefusals, EdgesWithoutGeometryBoundNothing) {
+  const BRep_Builder builder;
+  for (const bool relative : {false, true}) {
+    const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
+    TopoDS_Edge bare;
+    builder.MakeEdge(bare);
+    TopoDS_Wire wire;
+    builder.MakeWire(wire);
+    builder.Add(wire, bare.Oriented(TopAbs_INTERNAL));
+    TopoDS_Shape face = TopExp_Explorer(box, TopAbs_FACE).Current();
+    face.Free(true);
+    builder.Add(face, wire);
+    const Result<OcctMeshReport> report = triangulate(box, {.deflection = 0.1, .relative = relative});
+    EXPECT_TRUE(report.ok()) << report.status().message();
+  }
+}
+
+TEST(TriangulateRefusals, TinyAnglesAreKept) {
+  const OcctMeshOptions options{.deflection = 1, .angle = 1e-300, .max_triangles = 100000};
+  EXPECT_FALSE(triangulate(BRepPrimAPI_MakeSphere(1).Shape(), options).status().code() == StatusCode::internal);
 }
 
 }}  // namespace tessera::test

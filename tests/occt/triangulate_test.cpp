@@ -6,7 +6,9 @@
 #include <opencascade/BRepAlgoAPI_Cut.hxx>
 #include <opencascade/BRepAlgoAPI_Fuse.hxx>
 #include <opencascade/BRepBuilderAPI_Copy.hxx>
+#include <opencascade/BRepBuilderAPI_MakeEdge.hxx>
 #include <opencascade/BRepBuilderAPI_MakeFace.hxx>
+#include <opencascade/BRepBuilderAPI_MakeWire.hxx>
 #include <opencascade/BRepBuilderAPI_Transform.hxx>
 #include <opencascade/BRepCheck_Analyzer.hxx>
 #include <opencascade/BRepGProp.hxx>
@@ -14,14 +16,20 @@
 #include <opencascade/BRepPrimAPI_MakeBox.hxx>
 #include <opencascade/BRepPrimAPI_MakeCone.hxx>
 #include <opencascade/BRepPrimAPI_MakeCylinder.hxx>
+#include <opencascade/BRepPrimAPI_MakePrism.hxx>
+#include <opencascade/BRepPrimAPI_MakeRevol.hxx>
 #include <opencascade/BRepPrimAPI_MakeSphere.hxx>
 #include <opencascade/BRepPrimAPI_MakeTorus.hxx>
 #include <opencascade/BRep_Builder.hxx>
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/GProp_GProps.hxx>
+#include <opencascade/Geom_BezierSurface.hxx>
+#include <opencascade/Geom_OffsetSurface.hxx>
+#include <opencascade/Geom_Plane.hxx>
 #include <opencascade/Poly_Triangulation.hxx>
 #include <opencascade/RWGltf_CafWriter.hxx>
 #include <opencascade/TColStd_IndexedDataMapOfStringString.hxx>
+#include <opencascade/TColgp_Array2OfPnt.hxx>
 #include <opencascade/TDocStd_Document.hxx>
 #include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/TopoDS.hxx>
@@ -29,6 +37,7 @@
 #include <opencascade/XCAFApp_Application.hxx>
 #include <opencascade/XCAFDoc_DocumentTool.hxx>
 #include <opencascade/XCAFDoc_ShapeTool.hxx>
+#include <opencascade/gp_Circ.hxx>
 
 #include <cmath>
 #include <filesystem>
@@ -73,6 +82,7 @@ void expect_closed(const TopoDS_Shape& shape, const std::string& what, bool shar
       EXPECT_TRUE(report.closed) << here;
       EXPECT_TRUE(report.certified) << here;
       EXPECT_TRUE(report.open_edges.empty() && report.left_out.empty()) << here;
+      EXPECT_LE(report.gap, 0.1 * share * size) << here;
       // A face whose bound exceeds its deflection is named: slivers between an edge and its chords may take all of it.
       if (!relative && report.faults.empty()) {
         EXPECT_LE(report.bound, options.deflection) << here;
@@ -132,7 +142,81 @@ TEST(Triangulate, FacesKeepTheirOwnSpace) {
   expect_closed(drilled.Moved(TopLoc_Location(turn)), "moved");
   expect_closed(BRepBuilderAPI_Transform(drilled, mirror).Shape(), "mirrored", false);
   expect_closed(BRepBuilderAPI_Transform(drilled, mirror, true).Shape(), "mirrored copy");
-  expect_closed(drilled.Reversed().Reversed(), "reversed twice");
+  expect_closed(drilled.Reversed(), "reversed");
+}
+
+TopoDS_Shape disk(double radius) {
+  return BRepBuilderAPI_MakeFace(new Geom_Plane(gp_Ax3()),
+                                 BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(), radius)).Edge()))
+      .Shape();
+}
+
+/// Both ends of a prism, and of a part of a turn, are one face at two places.
+TEST(Triangulate, SweepsWithoutCopiesAreClosed) {
+  const TopoDS_Shape prism = BRepPrimAPI_MakePrism(disk(2), gp_Vec(0, 0, 5)).Shape();
+  gp_Trsf aside;
+  aside.SetTranslation(gp_Vec(4, 0, 0));
+  const TopoDS_Shape away = BRepBuilderAPI_Transform(disk(2), aside, true).Shape();
+  const TopoDS_Shape bend = BRepPrimAPI_MakeRevol(away, gp_Ax1(gp_Pnt(), gp_Dir(0, 1, 0)), 1.5).Shape();
+  for (const TopoDS_Shape& shape : {prism, bend})
+    for (const double deflection : {0.1, 1e-2, 1e-3}) {
+      const OcctMeshReport report = value_of(triangulate(shape, {.deflection = deflection}));
+      expect_good(shape, report, "sweep");
+      EXPECT_TRUE(report.closed) << deflection;
+      EXPECT_TRUE(report.open_edges.empty() && report.faults.empty()) << deflection;
+    }
+}
+
+/// A hole near one end gives that end's edge nodes that the other end's has not.
+TEST(Triangulate, EndsThatDifferAreSaidToBeOpen) {
+  const TopoDS_Shape prism = BRepPrimAPI_MakePrism(disk(2), gp_Vec(0, 0, 5)).Shape();
+  const gp_Ax2 across(gp_Pnt(-5, 0, 0.9), gp_Dir(1, 0.3, 0));
+  const TopoDS_Shape drilled = BRepAlgoAPI_Cut(prism, BRepPrimAPI_MakeCylinder(across, 0.3, 10).Shape()).Shape();
+  bool differs = false;
+  for (const double deflection : {0.1, 1e-2, 1e-3}) {
+    const OcctMeshReport report = value_of(triangulate(drilled, {.deflection = deflection}));
+    const bool is_open = stl_facts(drilled).open_sides > 0;
+    EXPECT_EQ(report.closed, !is_open) << deflection;
+    EXPECT_EQ(report.open_edges.empty(), !is_open) << deflection;
+    EXPECT_EQ(report.faults.empty(), !is_open) << deflection;
+    differs = differs || is_open;
+  }
+  EXPECT_TRUE(differs);  // or else the test shows nothing
+}
+
+/// Borders move by a share of the deflection, whatever the size of a shape.
+TEST(Triangulate, GapsFollowTheDeflection) {
+  for (const double radius : {1.0, 1e2, 1e4, 1e6}) {
+    const gp_Ax2 oblique(gp_Pnt(0, 0, radius), gp_Dir(0.3, 0, 1));
+    const TopoDS_Shape half = BRepPrimAPI_MakeBox(oblique, 9 * radius, 9 * radius, 9 * radius).Shape();
+    gp_Trsf back;
+    back.SetTranslation(gp_Vec(-4 * radius, -4 * radius, 0));
+    const TopoDS_Shape tool = BRepBuilderAPI_Transform(half, back, true).Shape();
+    for (const TopoDS_Shape& whole : {BRepPrimAPI_MakeCone(radius, radius / 2, 2 * radius).Shape(),
+                                      BRepPrimAPI_MakeCylinder(radius, 2 * radius).Shape()}) {
+      const TopoDS_Shape shape = BRepAlgoAPI_Cut(whole, tool).Shape();
+      for (const double share : {1e-2, 1e-4, 1e-6}) {
+        const double deflection = share * radius;
+        const OcctMeshReport report = value_of(triangulate(shape, {.deflection = deflection}));
+        EXPECT_TRUE(report.closed) << radius;
+        EXPECT_LE(report.gap, 0.02 * deflection + 4e-7) << radius;  // OpenCASCADE's cut has a tolerance of its own
+      }
+    }
+  }
+}
+
+/// A surface that is fitted counts with its error, at its face too.
+TEST(Triangulate, FitsCountInTheDeflection) {
+  TColgp_Array2OfPnt poles(1, 3, 1, 3);
+  for (int i = 1; i <= 3; ++i)
+    for (int j = 1; j <= 3; ++j) poles(i, j) = gp_Pnt(i, j, i == 2 && j == 2 ? 1.5 : 0.2 * i);
+  const handle<Geom_Surface> wave = new Geom_OffsetSurface(new Geom_BezierSurface(poles), 0.25);
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(wave, 1e-7).Face();
+  const OcctMeshReport report = value_of(triangulate(face, {.deflection = 1e-6}));
+  TopLoc_Location place;
+  EXPECT_FALSE(report.certified);
+  EXPECT_FALSE(report.faults.empty());
+  EXPECT_GE(BRep_Tool::Triangulation(face, place)->Deflection(), 0.999 * report.bound);
 }
 
 std::vector<handle<Poly_Triangulation>> triangulations_of(const TopoDS_Shape& shape) {

@@ -27,7 +27,7 @@ struct OcctMeshOptions {
   /// Whether the deflection of a face is a share of the largest side of the boxes of its edges, instead of a length.
   bool relative = false;
   bool parallel = true;  ///< whether all threads of the caller's TBB arena take part, instead of the caller alone
-  /// The largest number of triangles; a shape that takes more is an error.
+  /// The largest number of triangles, at most 2^30; a shape that takes more is an error.
   std::uint64_t max_triangles = std::uint64_t{1} << 30;
 };
 
@@ -52,7 +52,8 @@ struct OcctMeshReport {
   bool closed = false;
   std::vector<TopoDS_Edge> open_edges;  ///< if not closed: those that a single face has once
   std::vector<OcctMeshFault> left_out;  ///< faces that keep what they had, and why
-  std::vector<OcctMeshFault> faults;    ///< faces whose triangulation lacks something, such as a deflection that is met
+  std::vector<OcctMeshFault>
+      faults;  ///< faces whose deflection is not met or not proven, or that lack triangles or polygons
 };
 
 /// Triangulates the faces of a shape and stores the triangulations in it, in place of older ones.
@@ -63,7 +64,9 @@ struct OcctMeshReport {
 /// - Each edge gets one Poly_PolygonOnTriangulation per face, two at a seam, by growing parameters from its first to
 ///   its last. All faces along an edge have nodes at the same parameters and, up to the rounding of their locations, at
 ///   the same positions: the triangulation of a closed shell is closed.
-/// - A face that stands at several places is triangulated where the shape has it first.
+/// - A face that stands at several places is triangulated where the shape has it first. Elsewhere its neighbours may
+///   have other nodes along the common edges, as at the far end of a prism that OpenCASCADE made without copies. Then
+///   `closed` is false, and `open_edges` and `faults` name them.
 ///
 /// Edges that lie in a face without bounding it, and edges and vertices without faces, are left as they are.
 ///

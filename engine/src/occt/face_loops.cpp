@@ -80,8 +80,8 @@ class SurfaceSides {
 
 /// How far the curves of loops may lie from those of the file.
 struct LoopTolerances {
-  double curve = 0;      ///< in our parameters of the surface
-  double parameter = 0;  ///< of an edge's parameter along it, as a share of its range
+  double curve = 0;  ///< in our parameters of the surface
+  double along = 0;  ///< of an edge's parameter along it, as a length; 0: as far as rounding allows
 };
 
 Status append_edge(const BorderEdge& border, const SurfaceSides& sides, const Reparametrization& parameters,
@@ -91,7 +91,7 @@ Status append_edge(const BorderEdge& border, const SurfaceSides& sides, const Re
   Result<TrimCurve> made = trim_curve(border.curve, border.range, reversed, parameters, tolerances.curve);
   if (!made) return made.status();
   if (Status status = sides.keep_inside(made->curve); !status.ok()) return status;
-  loop.coedges.push_back(edges.coedge(border.edge, *made, border.range, tolerances.parameter));
+  loop.coedges.push_back(edges.coedge(border.edge, *made, border.range, tolerances.along));
   loop.curves.push_back(std::move(made->curve));
   return {};
 }
@@ -103,7 +103,10 @@ double fit_tolerance(const FaceBorder& border, const FaceBox& box, const Reparam
   const double least = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);
   if (border.fit_tolerance == 0 || parameters.is_identity()) return least;
   TopLoc_Location location;
-  const GeomAdaptor_Surface adaptor(bare_surface(BRep_Tool::Surface(border.face, location)));
+  const GeomAdaptor_Surface adaptor(bare_surface(BRep_Tool::Surface(border.face, location)), d.u0, d.u1, d.v0, d.v1);
+  // Of surfaces of revolution, say, OpenCASCADE's resolutions do not depend on the radius.
+  const bool has_resolution = adaptor.GetType() <= GeomAbs_BSplineSurface;
+  if (!has_resolution) return least;
   constexpr double slope = 0.94;
   const double wide =
       slope * std::min(adaptor.UResolution(border.fit_tolerance), adaptor.VResolution(border.fit_tolerance));
@@ -146,7 +149,7 @@ Result<FaceBox> face_box(const FaceBorder& border) {
 Result<FaceLoops> face_loops(const FaceBorder& border, const FaceBox& box, const Reparametrization& parameters,
                              const ShapeEdges& edges) {
   const SurfaceSides sides(border, box);
-  const LoopTolerances tolerances{fit_tolerance(border, box, parameters), border.fit_tolerance > 0 ? 1e-7 : 1e-10};
+  const LoopTolerances tolerances{fit_tolerance(border, box, parameters), border.fit_tolerance};
   FaceLoops out;
   for (const BorderWire& wire : border.wires) {
     TrimLoop loop{{}, !wire.is_outer};

@@ -16,6 +16,7 @@
 #include "exact/usable_edges.h"
 #include "occt/face_loops.h"
 #include "occt/face_surface.h"
+#include "occt/guarded_calls.h"
 #include "occt/occt_parameter.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -75,7 +76,7 @@ void PartShape::convert(std::size_t face) {
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();
   } catch (const Standard_Failure& failure) {
-    part_face.status = Status(StatusCode::internal, std::string("OpenCASCADE: ") + failure.GetMessageString());
+    part_face.status = status_of(failure);
   }
 }
 
@@ -149,6 +150,7 @@ void PartShape::finish(Shape& shape, OcctShape& sources, Shortcomings& shortcomi
       continue;
     }
     shortcomings.fitted += face.fit_error > 0;
+    shortcomings.fit_errors.push_back(face.fit_error);
     shortcomings.worst_fit = std::max(shortcomings.worst_fit, face.fit_error);
     if (face.wholes.shell != no_id)
       shape_.shells[face.wholes.shell].faces.push_back(static_cast<std::uint32_t>(shape_.faces.size()));

@@ -26,6 +26,7 @@ struct Shortcomings {
   StatusCode first_code = StatusCode::parse_error;  ///< of the first face that is left out
   std::size_t fitted = 0;                           ///< surfaces
   double worst_fit = 0;                             ///< their largest distance
+  std::vector<double> fit_errors;                   ///< of each face that is made, the distance of its surface
 };
 
 /// Reads a part in its own space, wherever it is placed. Calls in this order: make(), convert() of each face, from any

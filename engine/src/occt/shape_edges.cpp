@@ -25,6 +25,21 @@ double length_or_zero(double value) { return std::isfinite(value) && value > 0 ?
 
 bool is_range(const Interval& range) { return range.from < range.to && std::isfinite(range.to - range.from); }
 
+/// A length along an edge as a share of its range, of 1e-10 to 1e-7.
+double share_of(double length_along, const BrepEdge& edge) {
+  constexpr double least = 1e-10, most = 1e-7;
+  if (!edge.curve) return least;
+  double all = 0;  // no less than the edge's length
+  const auto points = edge.curve->points();
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) all += length(points[k + 1] - points[k]);
+  return all > 0 ? std::clamp(length_along / all, least, most) : least;
+}
+
+/// Whether a range is longer than a closed curve, up to rounding: such an edge would take memory by its number of turns.
+bool turns_twice(const Geom_Curve& curve, const Interval& range) {
+  return curve.IsPeriodic() && range.to - range.from > (1 + 1e-9) * curve.Period();
+}
+
 }  // namespace
 
 Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& execution) {
@@ -69,6 +84,7 @@ void ShapeEdges::read_edge(std::size_t k) {
   const handle<Geom_Curve> curve = BRep_Tool::Curve(edge, from, to);
   if (curve.IsNull()) BRep_Tool::Range(edge, from, to);
   if (!is_range({from, to})) return;
+  if (!curve.IsNull() && turns_twice(*curve, {from, to})) return;
   out.range = parameter.theirs = {from, to};
   if (curve.IsNull() || out.degenerate) return;
   const Result<SplineLine> line = spline_line(curve, out.range);
@@ -104,7 +120,7 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
     f.breaks.push_back(parameter.arcs ? parameter.arcs->parameter(t) : t);
   }
   settle_breaks(f);
-  state_parameter(f, trim.curve.domain(), out, tolerance);
+  state_parameter(f, trim.curve.domain(), out, share_of(tolerance, edges_[out.edge]));
   return out;
 }
 

@@ -22,9 +22,9 @@ class ShapeEdges {
   /// Standard_Failure.
   static Result<ShapeEdges> make(const TopoDS_Shape& shape, const Execution& execution);
 
-  /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`; `tolerance`: of
-  /// state_parameter(). Its edge is
-  /// no_id if the curve does not run along the edge from end to end.
+  /// The coedge of an edge of the shape, whose curve in a face is `trim`, made over the range `theirs`. Its edge is
+  /// no_id if the curve does not run along the edge from end to end. `tolerance`: the length by which points may move
+  /// along the edge, so that the relation of their parameters is simple.
   Coedge coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs, double tolerance) const;
 
   /// Moves vertices and edges into a shape of ours, and says what they are made of.

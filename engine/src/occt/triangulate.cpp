@@ -20,6 +20,7 @@
 #include "occt/edge_polygons.h"
 #include "occt/face_triangulation.h"
 #include "occt/guarded_calls.h"
+#include "occt/open_edges.h"
 #include "occt/part_shape.h"
 #include "occt/stored_meshes.h"
 #include "parallel/call_progress.h"
@@ -38,16 +39,22 @@ using opencascade::handle;
 /// and along v.
 constexpr double fit_share = 1.0 / 256, left_share = 1 - 2 * fit_share;
 
+/// OpenCASCADE counts nodes and triangles in int.
+constexpr std::uint64_t most_triangles = std::uint64_t{1} << 30;
+
 constexpr double stage_ends[] = {0.4, 0.6, 0.8, 0.9};
 
-/// The faces of a shape, each TShape where it comes first.
-TopoDS_Shape distinct_faces(const TopoDS_Shape& shape) {
+/// The faces of a shape, each TShape where it comes first. `repeats`: whether some stand at several places.
+TopoDS_Shape distinct_faces(const TopoDS_Shape& shape, bool& repeats) {
   TopoDS_Compound faces;
   const BRep_Builder builder;
   builder.MakeCompound(faces);
   std::unordered_set<const void*> seen;
   for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
-    if (seen.insert(at.Current().TShape().get()).second) builder.Add(faces, at.Current());
+    if (seen.insert(at.Current().TShape().get()).second)
+      builder.Add(faces, at.Current());
+    else
+      repeats = true;
   return faces;
 }
 
@@ -61,7 +68,7 @@ double size_of(const TopoDS_Face& face) {
   };
   for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
     Bnd_Box box;
-    if (!BRep_Tool::Degenerated(TopoDS::Edge(edge.Current())))
+    if (!BRep_Tool::Degenerated(TopoDS::Edge(edge.Current())) && BRep_Tool::IsGeometric(TopoDS::Edge(edge.Current())))
       BndLib_Add3dCurve::Add(BRepAdaptor_Curve(TopoDS::Edge(edge.Current())), 0, box);
     extend(box);
   }
@@ -75,8 +82,8 @@ double size_of(const TopoDS_Face& face) {
 class Triangulator {
  public:
   Triangulator(const TopoDS_Shape& shape, const OcctMeshOptions& options, const Execution& execution)
-      : options_(options), progress_(execution, stage_ends) {
-    described_.shape = distinct_faces(shape);
+      : given_(shape), options_(options), progress_(execution, stage_ends) {
+    described_.shape = distinct_faces(shape, repeats_);
     if (!options.relative) described_.fit_tolerance = fit_share * options.deflection;
   }
 
@@ -119,9 +126,9 @@ class Triangulator {
     to.angle = options_.angle;
     if (to.angle) {
       to.angle = std::min(*to.angle, std::numbers::pi / 2);
-      to.angle_rate = std::clamp(static_cast<int>(std::ceil(std::numbers::pi / *to.angle)), 1, 64);
+      to.angle_rate = static_cast<int>(std::clamp(std::ceil(std::numbers::pi / *to.angle), 1.0, 64.0));
     }
-    to.max_triangles = options_.max_triangles;
+    to.max_triangles = std::min(options_.max_triangles, most_triangles);
     to.joining.edge_vertices = true;
     to.parameters = VertexParameters::patch;
     tolerances_.assign(sources_.faces.size(), options_.deflection);
@@ -157,6 +164,9 @@ class Triangulator {
     return each_on_threads(sources_.faces.size(), 4, progress_.loops(), body);
   }
 
+  /// How far borders and a fitted surface may be from the face's own.
+  double moved(std::size_t face) const { return 2 * described_.fit_tolerance + lacks_.fit_errors[face]; }
+
   Status put(const PatchSet& set, const Tessellation& plan, const Mesh& mesh) {
     const Result<std::vector<EdgeVertex>> on_edges = edge_vertices(plan);
     if (!on_edges) return on_edges.status();
@@ -167,7 +177,7 @@ class Triangulator {
     const auto make = [&](std::size_t k) {
       made[k] = triangulations.make(k);
       if (made[k].IsNull()) return Status();
-      const double bound = triangulations.bound(k);
+      const double bound = triangulations.bound(k) + moved(k);
       made[k]->Deflection(std::isfinite(bound) ? std::max(bound, tolerances_[k]) : tolerances_[k]);
       made[k]->Parameters(parameters);
       return Status();
@@ -192,12 +202,23 @@ class Triangulator {
 
   /// Finds whether a side of a triangle is alone. Borders that the plan counts as open may still meet.
   Status find_open(const Tessellation& plan, const Mesh& mesh) {
+    if (repeats_) return find_open_anywhere(plan);
     report_.closed = plan.open_edges() == 0 && plan.crossed_patches().empty() && report_.left_out.empty();
     if (report_.closed) return {};
     const Result<MeshReport> found = check(mesh);
     if (!found) return found.status();
     report_.closed = found->open_edges == 0 && report_.left_out.empty();
     if (!report_.closed) list_open_edges();
+    return {};
+  }
+
+  /// Copies of a face meet others than the first one does, which the plan knows nothing of.
+  Status find_open_anywhere(const Tessellation& plan) {
+    OpenEdges open = open_edges(given_);
+    report_.open_edges = std::move(open.edges);
+    for (const TopoDS_Face& face : open.faces)
+      report_.faults.push_back({face, "it has nodes elsewhere along an edge than another face there"});
+    report_.closed = report_.open_edges.empty() && plan.crossed_patches().empty() && report_.left_out.empty();
     return {};
   }
 
@@ -223,7 +244,9 @@ class Triangulator {
     }
     for (const std::uint32_t patch : plan.crossed_patches()) beyond[set.source(patch).surface] = HUGE_VAL;
     for (std::size_t k = 0; k < beyond.size(); ++k)
-      if (beyond[k] > 0)
+      if (lacks_.fit_errors[k] > 0 && !(beyond[k] > 0))
+        add(k, "its surface is fitted by splines, to within " + text(lacks_.fit_errors[k]));
+      else if (beyond[k] > 0)
         add(k, std::isinf(beyond[k]) ? "a part of it has no triangles: its border crosses itself"
                                      : "its triangles are proven to be within " + text(beyond[k]) + " only");
   }
@@ -237,8 +260,10 @@ class Triangulator {
       if (uses[k] == 1 && !shape_.edges[k].degenerate) report_.open_edges.push_back(sources_.edges[k].edge);
   }
 
+  const TopoDS_Shape& given_;
   const OcctMeshOptions& options_;
   CallProgress progress_;
+  bool repeats_ = false;      ///< whether faces of the shape stand at several places
   DescribedShape described_;  ///< a compound of the faces
   Shape shape_;
   OcctShape sources_;

@@ -217,9 +217,17 @@ handle<Geom2d_Curve> bare_curve(handle<Geom2d_Curve> curve) {
 
 Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
                              const Reparametrization& parameters, double tolerance) {
-  const auto line = handle<Geom2d_Line>::DownCast(bare_curve(curve));
+  const handle<Geom2d_Curve> bare = bare_curve(curve);
+  const Status too_long(StatusCode::unsupported, "an edge runs around more than once");
+  if (bare->IsPeriodic() && range.to - range.from > (1 + 1e-9) * bare->Period()) return too_long;
+  const auto line = handle<Geom2d_Line>::DownCast(bare);
   if (!line.IsNull() && range.from < range.to) {
     gp_Pnt2d a = line->Value(range.from), b = line->Value(range.to);
+    constexpr double most_arcs = 64;
+    const auto is_long = [&](const std::optional<Arcs>& arcs, double way) {
+      return arcs && std::abs(way) > most_arcs * arcs->step();
+    };
+    if (is_long(parameters.u, b.X() - a.X()) || is_long(parameters.v, b.Y() - a.Y())) return too_long;
     if (reversed) std::swap(a, b);
     if (parameters.is_identity() || is_straight_along_a_parameter(a, b))
       return mapped_line(a, b, range, reversed, parameters);

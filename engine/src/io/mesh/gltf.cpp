@@ -1,4 +1,4 @@
-// glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021) All numbers lie in one buffer: positions, normals and
+// glTF 2.0 (Khronos Group, glTF 2.0 Specification, 2021). All numbers lie in one buffer: positions, normals and
 // parameters of all vertices of a mesh, then its indices.
 
 #include <algorithm>

@@ -312,7 +312,8 @@ class Closer {
   }
 
   void list_edge_vertices() {
-    std::vector<EdgeVertex>& all = out_.edge_vertices;
+    out_.edge_vertices = std::make_unique<std::vector<EdgeVertex>>();
+    std::vector<EdgeVertex>& all = *out_.edge_vertices;
     for (const StationVertices::Station& station : met_.stations) {
       for (std::uint32_t k = station.first; k < station.first + station.count; ++k) {
         const auto [patch, own] = met_.vertices[k];

@@ -14,6 +14,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -41,7 +42,7 @@ struct ClosedEdges {
   /// Cut patches whose triangles are divided, by growing place among the cuts: their bounds no longer hold.
   std::vector<std::uint32_t> edited_cuts;
   /// If asked for: the vertices along edges, by edges, then uses, then parameters. Each `vertex` is one of its patch.
-  std::vector<EdgeVertex> edge_vertices;
+  std::unique_ptr<std::vector<EdgeVertex>> edge_vertices;
   /// How many boundary edges of the mesh closing has removed.
   std::int64_t closed_segments = 0;
 };

@@ -160,8 +160,9 @@ Tessellation::Impl::Proof ProvenMesh::proof() const {
           .beyond = plan_.patches().rare->beyond,
           .gap = plan_.closed() ? plan_.closed()->gap : 0,
           .edge_gaps = plan_.closed() ? std::span<const float>(plan_.closed()->gaps) : std::span<const float>(),
-          .edge_vertices = plan_.closed() ? std::span<const EdgeVertex>(plan_.closed()->edge_vertices)
-                                          : std::span<const EdgeVertex>()};
+          .edge_vertices = plan_.closed() && plan_.closed()->edge_vertices
+                               ? std::span<const EdgeVertex>(*plan_.closed()->edge_vertices)
+                               : std::span<const EdgeVertex>()};
 }
 
 Status ProvenMesh::join(const PatchSet::Impl& set, const PlanFacts& facts, const Execution& execution) {
