@@ -43,7 +43,8 @@ class Closer {
         runs_(faces.runs) {}
 
   Result<ClosedEdges> run() {
-    Result<StationVertices> met = station_vertices(runs_, segments_, of_.same_share, of_.is_joined, of_.cancel);
+    Result<StationVertices> met =
+        station_vertices(runs_, segments_, of_.same_share, of_.is_joined, of_.lists_vertices, of_.cancel);
     if (!met) return met.status();
     met_ = *std::move(met);
     number_vertices();

@@ -10,8 +10,8 @@ namespace {
 class StationLister {
  public:
   StationLister(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                std::span<const std::uint8_t> is_joined)
-      : runs_(runs), all_(segments), same_share_(same_share), is_joined_(is_joined) {}
+                std::span<const std::uint8_t> is_joined, bool with_uses)
+      : runs_(runs), all_(segments), same_share_(same_share), is_joined_(is_joined), with_uses_(with_uses) {}
 
   Result<StationVertices> run(const std::atomic<bool>* cancel) {
     const std::size_t edges = runs_.edges().edges.size();
@@ -115,7 +115,7 @@ class StationLister {
       StationVertices::Station station{id, no_id, static_cast<std::uint32_t>(out_.vertices.size()), 0, from};
       for (; own != own_.end() && own->s <= to; ++own) {
         out_.vertices.push_back(own->vertex);
-        out_.uses.push_back(own->use);
+        if (with_uses_) out_.uses.push_back(own->use);
       }
       station.count = static_cast<std::uint32_t>(out_.vertices.size()) - station.first;
       if (edge.degenerate || (from == stations_.front().from && std::abs(from - edge.range.from) <= same))
@@ -130,6 +130,7 @@ class StationLister {
   EdgeSegments& all_;
   double same_share_;
   std::span<const std::uint8_t> is_joined_;
+  bool with_uses_;
   StationVertices out_;
   std::vector<EdgeSegment> segments_;
   std::vector<OwnVertex> own_;
@@ -139,8 +140,9 @@ class StationLister {
 }  // namespace
 
 Result<StationVertices> station_vertices(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                                         std::span<const std::uint8_t> is_joined, const std::atomic<bool>* cancel) {
-  return StationLister(runs, segments, same_share, is_joined).run(cancel);
+                                         std::span<const std::uint8_t> is_joined, bool with_uses,
+                                         const std::atomic<bool>* cancel) {
+  return StationLister(runs, segments, same_share, is_joined, with_uses).run(cancel);
 }
 
 }}  // namespace tessera::abi_0_1

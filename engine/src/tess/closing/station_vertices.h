@@ -21,7 +21,7 @@ struct StationVertices {
   };
   std::vector<Station> stations;      ///< by edges and growing parameters
   std::vector<PatchVertex> vertices;  ///< of one station after the other
-  std::vector<std::uint32_t> uses;    ///< by vertex: see EdgeRun
+  std::vector<std::uint32_t> uses;    ///< if asked for, by vertex: see EdgeRun
   /// By edge: how many segments of boundaries lie on it that no other patch has triangles on without this.
   std::vector<std::uint32_t> own;
   /// The segments of all edges: each from one station to another.
@@ -37,10 +37,12 @@ struct StationVertices {
 /// missing ones are inserted. Parameters within `same_share` of the edge's range count as one.
 ///
 /// - `is_joined`: by 4 * patch + side, whether triangles of another patch have the same border anyway.
+/// - `with_uses`: whether StationVertices::uses are listed.
 /// - `cancel`: looked at for each edge, unless null.
 ///
 /// Errors: cancelled.
 Result<StationVertices> station_vertices(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                                         std::span<const std::uint8_t> is_joined, const std::atomic<bool>* cancel);
+                                         std::span<const std::uint8_t> is_joined, bool with_uses,
+                                         const std::atomic<bool>* cancel);
 
 }}  // namespace tessera::abi_0_1
