@@ -20,9 +20,9 @@
 #include "occt/edge_polygons.h"
 #include "occt/face_triangulation.h"
 #include "occt/guarded_calls.h"
-#include "occt/open_edges.h"
 #include "occt/part_shape.h"
 #include "occt/stored_meshes.h"
+#include "occt/unmet_edges.h"
 #include "parallel/call_progress.h"
 #include "parallel/caller_arena.h"
 #include "tessera/model.h"
@@ -214,9 +214,9 @@ class Triangulator {
 
   /// Copies of a face meet others than the first one does, which the plan knows nothing of.
   Status find_open_anywhere(const Tessellation& plan) {
-    OpenEdges open = open_edges(given_);
-    report_.open_edges = std::move(open.edges);
-    for (const TopoDS_Face& face : open.faces)
+    UnmetEdges unmet = unmet_edges(given_);
+    report_.open_edges = std::move(unmet.edges);
+    for (const TopoDS_Face& face : unmet.faces)
       report_.faults.push_back({face, "it has nodes elsewhere along an edge than another face there"});
     report_.closed = report_.open_edges.empty() && plan.crossed_patches().empty() && report_.left_out.empty();
     return {};

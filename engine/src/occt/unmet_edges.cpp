@@ -1,4 +1,4 @@
-#include "occt/open_edges.h"
+#include "occt/unmet_edges.h"
 
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Poly_PolygonOnTriangulation.hxx>
@@ -41,10 +41,10 @@ std::vector<double> parameters_along(const TopoDS_Edge& edge, const handle<Poly_
 
 }  // namespace
 
-OpenEdges open_edges(const TopoDS_Shape& shape) {
+UnmetEdges unmet_edges(const TopoDS_Shape& shape) {
   TopTools_IndexedMapOfShape edges;
   std::vector<PolygonUses> uses;
-  OpenEdges out;
+  UnmetEdges out;
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
     TopLoc_Location place;
     const handle<Poly_Triangulation> on = BRep_Tool::Triangulation(TopoDS::Face(face.Current()), place);
