@@ -35,7 +35,8 @@ double share_of(double length_along, const BrepEdge& edge) {
   return all > 0 ? std::clamp(length_along / all, least, most) : least;
 }
 
-/// Whether a range is longer than a closed curve, up to rounding: such an edge would take memory by its number of turns.
+/// Whether a range is longer than a closed curve, up to rounding: such an edge would take memory by the number of its
+/// turns.
 bool turns_twice(const Geom_Curve& curve, const Interval& range) {
   return curve.IsPeriodic() && range.to - range.from > (1 + 1e-9) * curve.Period();
 }

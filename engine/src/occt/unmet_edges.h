@@ -1,9 +1,9 @@
 #pragma once
 // Where the stored triangulations of a shape do not meet.
 
-#include <TopoDS_Edge.hxx>
-#include <TopoDS_Face.hxx>
-#include <TopoDS_Shape.hxx>
+#include <opencascade/TopoDS_Edge.hxx>
+#include <opencascade/TopoDS_Face.hxx>
+#include <opencascade/TopoDS_Shape.hxx>
 #include <vector>
 
 namespace tessera { inline namespace abi_0_1 {
