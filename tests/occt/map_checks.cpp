@@ -19,7 +19,7 @@ using opencascade::handle;
 
 Vec3 vec(const gp_XYZ& p) { return {p.X(), p.Y(), p.Z()}; }
 
-/// What the checks of one model share.
+/// The data that the checks of one model share.
 struct MapCheck {
   const OcctModel& all;
   TopTools_IndexedMapOfShape faces, edges;  ///< of the shape

@@ -302,4 +302,12 @@ StlFacts stl_facts(const TopoDS_Shape& shape) {
   return facts;
 }
 
+std::vector<opencascade::handle<Poly_Triangulation>> triangulations_of(const TopoDS_Shape& shape) {
+  std::vector<opencascade::handle<Poly_Triangulation>> all;
+  TopLoc_Location place;
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+    all.push_back(BRep_Tool::Triangulation(TopoDS::Face(face.Current()), place));
+  return all;
+}
+
 }  // namespace tessera::test

@@ -1,6 +1,7 @@
 #pragma once
 // Triangulations that shapes hold, checked against what OpenCASCADE's consumers of them expect.
 
+#include <opencascade/Poly_Triangulation.hxx>
 #include <opencascade/TopoDS_Shape.hxx>
 
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace tessera::test {
 /// The diagonal of a shape's box, whatever triangulations it has.
 double size_of(const TopoDS_Shape& shape);
 
-/// What was found in the triangulations of a shape.
+/// Findings in the triangulations of a shape.
 struct PolyFacts {
   std::size_t faces = 0, nodes = 0, triangles = 0, polygons = 0;
   std::vector<std::string> wrong;  ///< the first few violations, one sentence each
@@ -35,5 +36,8 @@ struct StlFacts {
   double area = 0;
 };
 StlFacts stl_facts(const TopoDS_Shape& shape);
+
+/// The triangulations of all faces of a shape, wherever they stand; null where there is none.
+std::vector<opencascade::handle<Poly_Triangulation>> triangulations_of(const TopoDS_Shape& shape);
 
 }  // namespace tessera::test

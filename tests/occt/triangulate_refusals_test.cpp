@@ -17,26 +17,18 @@
 #include <opencascade/TopoDS_Wire.hxx>
 
 #include <atomic>
-#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "occt/poly_checks.h"
 #include "support/synthetic_sets.h"
+#include "tessera/occt.h"
 #include "tessera/occt_mesh.h"
 
 namespace tessera::test { namespace {
 
 using opencascade::handle;
-
-std::vector<handle<Poly_Triangulation>> meshes_of(const TopoDS_Shape& shape) {
-  std::vector<handle<Poly_Triangulation>> all;
-  TopLoc_Location place;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
-    all.push_back(BRep_Tool::Triangulation(TopoDS::Face(face.Current()), place));
-  return all;
-}
 
 TEST(TriangulateRefusals, RequestsAreChecked) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(1, 1, 1).Shape();
@@ -55,16 +47,16 @@ TEST(TriangulateRefusals, RequestsAreChecked) {
   BRep_Builder().MakeCompound(empty);
   EXPECT_EQ(code(empty, {.deflection = 1}), StatusCode::invalid_argument);
   EXPECT_EQ(code(TopExp_Explorer(box, TopAbs_EDGE).Current(), {.deflection = 1}), StatusCode::invalid_argument);
-  for (const handle<Poly_Triangulation>& mesh : meshes_of(box)) EXPECT_TRUE(mesh.IsNull());
+  for (const handle<Poly_Triangulation>& mesh : triangulations_of(box)) EXPECT_TRUE(mesh.IsNull());
 }
 
 /// Calls that fail leave older triangulations, and the polygons on them.
 TEST(TriangulateRefusals, FailuresChangeNothing) {
   const TopoDS_Shape shape = BRepPrimAPI_MakeSphere(3).Shape();
   BRepMesh_IncrementalMesh(shape, 0.1);
-  const std::vector<handle<Poly_Triangulation>> before = meshes_of(shape);
+  const std::vector<handle<Poly_Triangulation>> before = triangulations_of(shape);
   const auto expect_same = [&] {
-    EXPECT_EQ(meshes_of(shape), before);
+    EXPECT_EQ(triangulations_of(shape), before);
     TopLoc_Location place;
     for (TopExp_Explorer edge(shape, TopAbs_EDGE); edge.More(); edge.Next())
       EXPECT_FALSE(BRep_Tool::PolygonOnTriangulation(TopoDS::Edge(edge.Current()), before[0], place).IsNull());
@@ -85,7 +77,7 @@ TEST(TriangulateRefusals, FailuresChangeNothing) {
     locked.TShape()->Locked(false);
   }
   EXPECT_TRUE(triangulate(shape, {.deflection = 1e-2}).ok());
-  EXPECT_NE(meshes_of(shape), before);
+  EXPECT_NE(triangulations_of(shape), before);
 }
 
 /// Faces that cannot be converted keep what they have, and are named; the others are triangulated.
@@ -123,9 +115,11 @@ TEST(TriangulateRefusals, EdgesThatRunAroundForEver) {
     const TopoDS_Shape shape = BRepPrimAPI_MakeCylinder(1, 1).Shape();
     for (TopExp_Explorer edge(shape, TopAbs_EDGE); edge.More(); edge.Next())
       BRep_Builder().Range(TopoDS::Edge(edge.Current()), 0, turns);
-    const auto begin = std::chrono::steady_clock::now();
-    (void)triangulate(shape, {.deflection = 0.1});
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << turns;
+    const Result<OcctModel> model = model_from(shape);
+    ASSERT_TRUE(model) << model.status().message();
+    for (const BrepEdge& edge : model->model.shapes[0].edges)
+      EXPECT_LE(edge.curve ? edge.curve->points().size() : 0, 9u) << turns;
+    EXPECT_NE(triangulate(shape, {.deflection = 0.1}).status().code(), StatusCode::out_of_memory) << turns;
   }
 }
 
@@ -145,11 +139,6 @@ TEST(TriangulateRefusals, EdgesWithoutGeometryBoundNothing) {
     const Result<OcctMeshReport> report = triangulate(box, {.deflection = 0.1, .relative = relative});
     EXPECT_TRUE(report.ok()) << report.status().message();
   }
-}
-
-TEST(TriangulateRefusals, TinyAnglesAreKept) {
-  const OcctMeshOptions options{.deflection = 1, .angle = 1e-300, .max_triangles = 100000};
-  EXPECT_FALSE(triangulate(BRepPrimAPI_MakeSphere(1).Shape(), options).status().code() == StatusCode::internal);
 }
 
 }}  // namespace tessera::test

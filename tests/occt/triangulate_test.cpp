@@ -219,14 +219,6 @@ TEST(Triangulate, FitsCountInTheDeflection) {
   EXPECT_GE(BRep_Tool::Triangulation(face, place)->Deflection(), 0.999 * report.bound);
 }
 
-std::vector<handle<Poly_Triangulation>> triangulations_of(const TopoDS_Shape& shape) {
-  std::vector<handle<Poly_Triangulation>> all;
-  TopLoc_Location place;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
-    all.push_back(BRep_Tool::Triangulation(TopoDS::Face(face.Current()), place));
-  return all;
-}
-
 /// A shape that stands at several places is triangulated once, and all its places show it.
 TEST(Triangulate, SharedShapesAreTriangulatedOnce) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(3, 4, 5).Shape();

@@ -26,7 +26,7 @@ struct BorderWire {
   bool is_outer = true;  ///< as BRepTools::OuterWire() finds it: its box holds those of all others
 };
 
-/// What the box and the loops of a face are made of. OpenCASCADE projects edges onto planes each time that it is asked
+/// The sources of a face's box and loops. OpenCASCADE projects edges onto planes each time that it is asked
 /// for their curve there, so each is asked for once.
 struct FaceBorder {
   TopoDS_Face face;  ///< forward: wires of a reversed face run the other way, and enclose the same region

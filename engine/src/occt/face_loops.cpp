@@ -104,7 +104,7 @@ double fit_tolerance(const FaceBorder& border, const FaceBox& box, const Reparam
   if (border.fit_tolerance == 0 || parameters.is_identity()) return least;
   TopLoc_Location location;
   const GeomAdaptor_Surface adaptor(bare_surface(BRep_Tool::Surface(border.face, location)), d.u0, d.u1, d.v0, d.v1);
-  // Of surfaces of revolution, say, OpenCASCADE's resolutions do not depend on the radius.
+  // OpenCASCADE's resolutions of surfaces of revolution, say, do not depend on the radius.
   const bool has_resolution = adaptor.GetType() <= GeomAbs_BSplineSurface;
   if (!has_resolution) return least;
   constexpr double slope = 0.94;

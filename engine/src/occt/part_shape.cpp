@@ -61,7 +61,7 @@ void PartShape::add_all(const TopoDS_Shape& shape, Wholes wholes, std::size_t fi
   for (TopoDS_Iterator child(shape); child.More(); child.Next()) add_all(child.Value(), wholes, first_face);
 }
 
-/// What messages call a face: "face #51 (nut)".
+/// The name of a face in messages: "face #51 (nut)".
 std::string PartShape::words(const PartFace& face) const {
   const auto label = file_->labels.find(identity(face.face));
   const bool labelled = label != file_->labels.end() && !label->second.empty();

@@ -16,7 +16,7 @@ namespace {
 
 using opencascade::handle;
 
-/// What the faces of an edge have along it.
+/// The polygons that the faces of an edge have along it.
 struct PolygonUses {
   std::vector<double> parameters;  ///< of the first polygon
   std::size_t count = 0;

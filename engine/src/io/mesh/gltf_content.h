@@ -71,7 +71,7 @@ class GltfContent {
     template <class... Parts>
     int add(const Parts&... parts);
   };
-  /// What the vertices of a range have, or the views of the last mesh; -1: the mesh lacks the attribute.
+  /// The accessors of a range of vertices, or the views of the last mesh; -1: the mesh lacks the attribute.
   struct Attributes {
     int positions = -1, normals = -1, parameters = -1;
   };
