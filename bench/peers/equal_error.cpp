@@ -176,13 +176,6 @@ struct Named {
   PartRow row;
 };
 
-void print_ratios(const char* of, std::vector<double> ratios) {
-  std::ranges::sort(ratios);
-  const std::size_t half = ratios.size() / 2;
-  const double median = ratios.size() % 2 == 1 ? ratios[half] : (ratios[half - 1] + ratios[half]) / 2;
-  std::printf("%s: median %.3g, from %.3g to %.3g\n", of, median, ratios.front(), ratios.back());
-}
-
 void print_summary(const std::vector<Named>& rows) {
   if (rows.empty()) return;
   std::vector<double> speeds, shares;
@@ -203,6 +196,13 @@ void print_summary(const std::vector<Named>& rows) {
 }
 
 }  // namespace
+
+void print_ratios(const char* of, std::vector<double> ratios) {
+  std::ranges::sort(ratios);
+  const std::size_t half = ratios.size() / 2;
+  const double median = ratios.size() % 2 == 1 ? ratios[half] : (ratios[half - 1] + ratios[half]) / 2;
+  std::printf("%s: median %.3g, from %.3g to %.3g\n", of, median, ratios.front(), ratios.back());
+}
 
 EqualMesh mesh_of_equal_error(OcctShape& theirs, const FaceErrorMeter& meter, double own, double tolerance,
                               double angle) {

@@ -30,6 +30,9 @@ struct EqualMesh {
 EqualMesh mesh_of_equal_error(OcctShape& theirs, const FaceErrorMeter& meter, double own, double tolerance,
                               double angle);
 
+/// Prints the median and the ends of ratios, of which there must be one.
+void print_ratios(const char* of, std::vector<double> ratios);
+
 /// Prints a line for each file, and the medians and the ends of the ratios. Each file is read and meshed in a process
 /// of its own, since some files crash OpenCASCADE or do not end; such a file has a line that says so.
 void compare_parts(const PartOptions& options);

@@ -152,22 +152,15 @@ struct Named {
   Row row;
 };
 
-template <class Ratio>
-void print_ratios(const char* of, const std::vector<Named>& rows, Ratio ratio) {
-  std::vector<double> ratios;
-  for (const Named& one : rows) ratios.push_back(ratio(one.row));
-  std::ranges::sort(ratios);
-  const std::size_t half = ratios.size() / 2;
-  const double median = ratios.size() % 2 == 1 ? ratios[half] : (ratios[half - 1] + ratios[half]) / 2;
-  std::printf("%s: median %.3g, from %.3g to %.3g\n", of, median, ratios.front(), ratios.back());
-}
-
 void print_summary(const std::vector<Named>& rows) {
   if (rows.empty()) return;
+  std::vector<double> one, two, shares;
+  for (const Named& of : rows)
+    one.push_back(of.row.speed()), two.push_back(of.row.two_speed()), shares.push_back(of.row.share());
   std::printf("\n%zu files compared\n", rows.size());
-  print_ratios("times as fast as OpenCASCADE, one thread", rows, [](const Row& row) { return row.speed(); });
-  print_ratios("times as fast as OpenCASCADE, two threads", rows, [](const Row& row) { return row.two_speed(); });
-  print_ratios("triangles, Tessera's over OpenCASCADE's", rows, [](const Row& row) { return row.share(); });
+  print_ratios("times as fast as OpenCASCADE, one thread", one);
+  print_ratios("times as fast as OpenCASCADE, two threads", two);
+  print_ratios("triangles, Tessera's over OpenCASCADE's", shares);
   const auto is_slower = [](const Named& one) { return one.row.speed() < 1 || one.row.two_speed() < 1; };
   std::printf("slower: %td\n", std::ranges::count_if(rows, is_slower));
   for (const Named& one : rows)
