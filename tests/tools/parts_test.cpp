@@ -116,6 +116,38 @@ TEST_F(Parts, AShapeIsMeshedOnceAndStandsInManyPlaces) {
   EXPECT_EQ(value_of(read_mesh(folder_ / "all.ply")).triangle_count(), all["triangles"]);
 }
 
+TEST_F(Parts, ShapesSideBySideGiveWhatOneThreadGives) {
+  const Shape one = channel();
+  std::vector<Instance> instances;
+  for (std::size_t k = 0; k < 150; ++k) {
+    model_.shapes.resize(k + 1, one);
+    model_.shapes[k].name = "shape " + std::to_string(k);
+    if (k % 7 == 3) model_.shapes[k].faces.pop_back();
+    const Affine placement = Affine::scaled({1 + 0.1 * double(k), 1, 1 + double(k % 11)});
+    instances.push_back({.shape = static_cast<std::uint32_t>(k), .placement = placement});
+  }
+  for (std::size_t k = 1; k < instances.size(); ++k)
+    instances[k].first_surface = instances[k - 1].first_surface + model_.shapes[k - 1].faces.size();
+  model_.instances = instances;
+  model_.surfaces = value_of(placed_faces(model_.shapes, model_.instances));
+  const auto both = [&](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.end(), {"--threads", "1"});
+    const ToolRun alone = tessellate("one" + name, options);
+    options.back() = "4";
+    const ToolRun together = tessellate("four" + name, options);
+    EXPECT_EQ(alone.status, together.status);
+    EXPECT_EQ(alone.errors, together.errors);
+    if (alone.status == 0) {
+      EXPECT_TRUE(content_of(folder_ / ("one" + name)) == content_of(folder_ / ("four" + name)));
+    }
+    return alone.errors;
+  };
+  EXPECT_EQ(both(".glb", {"--tolerance", "0.001"}), "");
+  EXPECT_EQ(both(".ply", {"--tolerance", "0.001"}), "");
+  // The first shape, by their order, with which the meshes are too large.
+  EXPECT_NE(both(".glb", {"--tolerance", "0.001", "--max-triangles", "2000"}).find("shape "), std::string::npos);
+}
+
 TEST_F(Parts, TheToleranceIsALengthOfTheModel) {
   const std::vector<Affine> places{Affine::translated({-9, 0, 0}),
                                    Affine::translated({50, 0, 0}) * Affine::scaled({10, 10, 10}),

@@ -79,4 +79,17 @@ void Progress::tell(double share) {
   std::fprintf(stderr, "\r%s\x1b[K", progress_line(work_, share, now, terminal_size().columns).c_str());
 }
 
+Execution PartsProgress::execution(std::size_t part) {
+  Execution execution = bar_.execution();
+  if (execution.progress) execution.progress = [this, part](double share) { tell(part, share); };
+  return execution;
+}
+
+void PartsProgress::tell(std::size_t part, double share) {
+  const std::lock_guard lock(mutex_);
+  sum_ += share - shares_[part];
+  shares_[part] = share;
+  bar_.tell(sum_ / static_cast<double>(shares_.size()));
+}
+
 }  // namespace tessera::cli

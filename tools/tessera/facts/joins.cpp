@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <mutex>
 #include <numbers>
 #include <unordered_map>
 #include <vector>
@@ -156,14 +155,11 @@ JoinedPatch side(const PatchSet& set, const Border& border) {
 /// Measures joins on all threads; an element without a value is a join that cannot be measured (none is known).
 std::vector<Result<JoinReport>> measure(const PatchSet& set, std::span<const Join> joins) {
   std::vector<Result<JoinReport>> reports(joins.size(), Status(StatusCode::cancelled, "interrupted"));
-  Progress progress("measuring joins");
-  std::mutex mutex;
-  std::size_t done = 0;
+  PartsProgress progress("measuring joins", joins.size());
   tbb::parallel_for(std::size_t{0}, joins.size(), [&](std::size_t k) {
     if (interrupted()) return;
     reports[k] = measure_join(side(set, joins[k].p), side(set, joins[k].q), join_tolerances);
-    const std::lock_guard lock(mutex);
-    progress.tell(static_cast<double>(++done) / static_cast<double>(joins.size()));
+    progress.tell(k, 1);
   });
   return reports;
 }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdlib>
 #include <iterator>
-#include <mutex>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -44,14 +43,11 @@ std::size_t count_trimmed(std::span<const ModelSurface> surfaces) {
 Result<std::vector<PatchGrid>> convert(const Model& model, const FitOptions& fit) {
   const std::size_t count = model.surfaces.size();
   std::vector<std::optional<Result<PatchGrid>>> results(count);
-  Progress progress("converting");
-  std::mutex mutex;
-  std::size_t done = 0;
+  PartsProgress progress("converting", count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
     if (interrupted()) return;
     results[k].emplace(to_bezier(model.surfaces[k], fit));
-    const std::lock_guard lock(mutex);
-    progress.tell(static_cast<double>(++done) / static_cast<double>(count));
+    progress.tell(k, 1);
   });
   std::vector<PatchGrid> grids;
   grids.reserve(count);

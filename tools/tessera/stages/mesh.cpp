@@ -1,7 +1,12 @@
 #include "stages/mesh.h"
 
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "console/memory.h"
 #include "console/progress.h"
@@ -27,15 +32,6 @@ Status check_memory(const MeshCapacity& mesh, const MeshOptions& options, bool h
 }
 
 bool has_doubles(const TessellationOptions& options) { return options.precision == Precision::double_precision; }
-
-Result<Mesh> run_plan(const Tessellation& plan, const PatchSet& set) {
-  Result<Mesh> mesh = plan.allocate();
-  if (!mesh) return mesh;
-  Progress progress("tessellating");
-  const Status status = plan.run(set, mesh->views(), progress.execution());
-  if (!status.ok()) return status;
-  return mesh;
-}
 
 Result<Tessellation> plan_of(const PatchSet& set, const TessellationOptions& options) {
   Result<Tessellation> plan = Tessellation::make(set, options, {.cancel = &interrupted()});
@@ -75,17 +71,13 @@ void add_plan(const Tessellation& plan, const PackedSet& use, Meshed& made) {
   }
 }
 
-/// Adds the open edges of a mesh. They are counted where loops cut patches or faces share edges, because the plan's own
+/// The open edges of a mesh. They are counted where loops cut patches or faces share edges, because the plan's own
 /// number takes for granted that loops do not run over each other.
-Status add_open_edges(const Tessellation& plan, const PackedSet& use, const Mesh& mesh, Meshed& made) {
-  std::size_t open = plan.open_edges();
-  if (use.set->cut_count() > 0 || !plan.edge_gaps().empty()) {
-    const Result<MeshReport> report = check(mesh);
-    if (!report) return report.status();
-    open = report->open_edges;
-  }
-  made.open_edges += use.count * open;
-  return {};
+Result<std::size_t> open_edges(const Tessellation& plan, const PatchSet& set, const Mesh& mesh) {
+  if (set.cut_count() == 0 && plan.edge_gaps().empty()) return plan.open_edges();
+  const Result<MeshReport> report = check(mesh);
+  if (!report) return report.status();
+  return report->open_edges;
 }
 
 /// The box of all control points where the instances stand.
@@ -144,35 +136,74 @@ Status in_shape(const Model& model, std::size_t k, const Status& status) {
           "shape " + std::to_string(k) + (name.empty() ? "" : " (" + name + ")") + ": " + status.message()};
 }
 
-/// Meshes sets one after the other.
-class SetMesher {
+/// Counts what the meshes of a file take, and refuses too much.
+class MeshSizes {
  public:
-  SetMesher(const MeshOptions& options, const FilePlan& plan, bool flat, Meshed& made)
-      : options_(options), plan_(plan), flat_(flat), made_(made) {}
+  /// `flat`: whether the file gets a mesh for each instance, beside the shape's own.
+  MeshSizes(const MeshOptions& options, bool has_doubles, bool flat)
+      : options_(options), has_doubles_(has_doubles), flat_(flat) {}
 
-  Result<Mesh> mesh(const PackedSet& packed, const TessellationOptions& options) {
-    const Result<Tessellation> plan = plan_of(*packed.set, options);
-    if (!plan) return plan.status();
-    add_plan(*plan, packed, made_);
-    if (const Status status = check_size(plan->capacity(), packed.count); !status.ok()) return status;
-    Result<Mesh> mesh = run_plan(*plan, *packed.set);
-    if (!mesh || options_.grid) return mesh;
-    if (Status status = add_open_edges(*plan, packed, *mesh, made_); !status.ok()) return status;
-    return mesh;
-  }
-
-  Status add_shape(const Model& model, std::size_t k, const PackedSet& packed) {
-    if (!packed.set) return {};
-    Result<Mesh> mesh = this->mesh(packed, options_in(packed));
-    if (!mesh) return mesh.status();
-    Result<std::vector<MeshPart>> parts = parts_by_face(*mesh, *packed.set, model.shapes[k]);
-    if (!parts) return parts.status();
-    mesh->parts = *std::move(parts);
-    made_.assembly.shapes[k].mesh = *std::move(mesh);
-    return {};
+  /// Adds the mesh of a set that stands `count` times.
+  Status add(const MeshCapacity& mesh, std::size_t count, bool by_shapes) {
+    const std::size_t in_file = flat_ ? count : 1, in_memory = flat_ ? count + 1 : 1;
+    triangles_ += in_file * (mesh.triangles + 2 * mesh.quads);
+    memory_.vertices += in_memory * mesh.vertices;
+    memory_.triangles += in_memory * mesh.triangles;
+    memory_.quads += in_memory * mesh.quads;
+    if (by_shapes && !options_.grid && triangles_ > options_.certified.max_triangles)
+      return {StatusCode::invalid_argument, "the meshes of all shapes up to here take " +
+                                                counted(triangles_, "triangle") + ", the limit is " +
+                                                std::to_string(options_.certified.max_triangles)};
+    return check_memory(memory_, options_, has_doubles_);
   }
 
  private:
+  const MeshOptions& options_;
+  bool has_doubles_, flat_;
+  MeshCapacity memory_;
+  std::size_t triangles_ = 0;
+};
+
+/// A set on its way to a mesh.
+struct SetMesh {
+  std::size_t number = 0;
+  Status status = {};  ///< the first error
+  std::optional<Tessellation> plan = {};
+  Mesh mesh = {};
+  std::size_t open_edges = 0;
+};
+
+/// The steps from a set to its mesh, and what is known of it.
+class SetMesher {
+ public:
+  SetMesher(const MeshOptions& options, const FilePlan& plan, bool flat, std::size_t sets, Meshed& made)
+      : options_(options),
+        plan_(plan),
+        made_(made),
+        sizes_(options, has_doubles(plan.options), flat),
+        progress_("tessellating", sets) {}
+
+  /// Threads: any number, as for mesh().
+  void plan(const PackedSet& packed, const TessellationOptions& options, SetMesh& work) {
+    Result<Tessellation> plan = plan_of(*packed.set, options);
+    if (plan)
+      work.plan = *std::move(plan);
+    else
+      work.status = plan.status();
+  }
+
+  /// Adds what is known of the plan. Threads: one, sets in their order.
+  void count(const PackedSet& packed, SetMesh& work) {
+    if (!work.status.ok()) return;
+    add_plan(*work.plan, packed, made_);
+    work.status = sizes_.add(work.plan->capacity(), packed.count, made_.by_shapes);
+  }
+
+  void mesh(const PackedSet& packed, SetMesh& work) {
+    if (work.status.ok()) work.status = run(packed, work);
+    work.plan.reset();
+  }
+
   /// Lengths of the model become lengths of the shape.
   TessellationOptions options_in(const PackedSet& shape) const {
     TessellationOptions options = plan_.options;
@@ -184,41 +215,85 @@ class SetMesher {
     return options;
   }
 
-  /// Adds to what is held in memory and in the file, and refuses too much.
-  Status check_size(const MeshCapacity& mesh, std::size_t count) {
-    const std::size_t in_file = flat_ ? count : 1, in_memory = flat_ ? count + 1 : 1;
-    triangles_ += in_file * (mesh.triangles + 2 * mesh.quads);
-    memory_.vertices += in_memory * mesh.vertices;
-    memory_.triangles += in_memory * mesh.triangles;
-    memory_.quads += in_memory * mesh.quads;
-    if (made_.by_shapes && !options_.grid && triangles_ > options_.certified.max_triangles)
-      return {StatusCode::invalid_argument, "the meshes of all shapes up to here take " +
-                                                counted(triangles_, "triangle") + ", the limit is " +
-                                                std::to_string(options_.certified.max_triangles)};
-    return check_memory(memory_, options_, has_doubles(plan_.options));
+ private:
+  Status run(const PackedSet& packed, SetMesh& work) {
+    Result<Mesh> mesh = work.plan->allocate();
+    if (!mesh) return mesh.status();
+    work.mesh = *std::move(mesh);
+    const Status status = work.plan->run(*packed.set, work.mesh.views(), progress_.execution(work.number));
+    if (!status.ok() || options_.grid) return status;
+    const Result<std::size_t> open = open_edges(*work.plan, *packed.set, work.mesh);
+    if (open) work.open_edges = *open;
+    return open.status();
   }
 
   const MeshOptions& options_;
   const FilePlan& plan_;
-  bool flat_;  ///< whether the file gets a mesh for each instance
   Meshed& made_;
-  MeshCapacity memory_;
-  std::size_t triangles_ = 0;
+  MeshSizes sizes_;
+  PartsProgress progress_;
 };
 
 /// Meshes all surfaces as one set.
 Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
                    Meshed& made) {
-  const PatchSet& set = *packed.sets[0].set;
-  const FilePlan file = plan_for_file(options, set.model_box(), path);
-  Result<Mesh> mesh = SetMesher(options, file, false, made).mesh(packed.sets[0], file.options);
-  if (!mesh) return mesh.status();
-  Result<std::vector<MeshPart>> parts = parts_by_surface(*mesh, set, model);
+  const PackedSet& only = packed.sets[0];
+  const FilePlan file = plan_for_file(options, only.set->model_box(), path);
+  SetMesher mesher(options, file, false, 1, made);
+  SetMesh work;
+  mesher.plan(only, file.options, work);
+  mesher.count(only, work);
+  mesher.mesh(only, work);
+  if (!work.status.ok()) return work.status;
+  Result<std::vector<MeshPart>> parts = parts_by_surface(work.mesh, *only.set, model);
   if (!parts) return parts.status();
-  made.mesh = *std::move(mesh);
+  made.mesh = std::move(work.mesh);
   made.mesh.parts = *std::move(parts);
-  add_file(file, options, set.model_box(), made);
+  made.open_edges = only.count * work.open_edges;
+  add_file(file, options, only.set->model_box(), made);
   return {};
+}
+
+/// Gives the mesh of a shape its parts.
+void add_parts(const Model& model, const PackedSet& packed, SetMesh& work) {
+  if (!work.status.ok()) return;
+  Result<std::vector<MeshPart>> parts = parts_by_face(work.mesh, *packed.set, model.shapes[work.number]);
+  if (parts)
+    work.mesh.parts = *std::move(parts);
+  else
+    work.status = parts.status();
+}
+
+/// Meshes the shapes that have a set, several side by side; `works` has an element for each shape. After an error no
+/// further shape begins.
+void run_shapes(const Packed& packed, const Model& model, SetMesher& mesher, std::vector<SetMesh>& works) {
+  using tbb::filter_mode, tbb::make_filter;
+  std::size_t next = 0;
+  std::atomic<bool> has_failed = false;
+  const auto take = [&](tbb::flow_control& flow) {
+    while (next < works.size() && !packed.sets[next].set) ++next;
+    if (next == works.size() || has_failed) flow.stop();
+    return next++;
+  };
+  const auto plan = [&](std::size_t k) {
+    works[k].number = k;
+    mesher.plan(packed.sets[k], mesher.options_in(packed.sets[k]), works[k]);
+    return k;
+  };
+  const auto count = [&](std::size_t k) {
+    mesher.count(packed.sets[k], works[k]);
+    return k;
+  };
+  const auto mesh = [&](std::size_t k) {
+    mesher.mesh(packed.sets[k], works[k]);
+    add_parts(model, packed.sets[k], works[k]);
+    if (!works[k].status.ok()) has_failed = true;
+  };
+  const auto at_once = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  tbb::parallel_pipeline(at_once, make_filter<void, std::size_t>(filter_mode::serial_in_order, take) &
+                                      make_filter<std::size_t, std::size_t>(filter_mode::parallel, plan) &
+                                      make_filter<std::size_t, std::size_t>(filter_mode::serial_in_order, count) &
+                                      make_filter<std::size_t, void>(filter_mode::parallel, mesh));
 }
 
 /// Meshes each shape once.
@@ -231,9 +306,14 @@ Status mesh_shapes(const Packed& packed, const Model& model, const MeshOptions& 
   const Box3 box = box_of(model, packed);
   const Result<ShapesPlan> plan = shapes_plan(options, model, box, path);
   if (!plan) return plan.status();
-  SetMesher mesher(options, plan->file, is_flat(path), made);
-  for (std::size_t k = 0; k < packed.sets.size(); ++k)
-    if (const Status added = mesher.add_shape(model, k, packed.sets[k]); !added.ok()) return in_shape(model, k, added);
+  SetMesher mesher(options, plan->file, is_flat(path), packed.sets.size(), made);
+  std::vector<SetMesh> works(packed.sets.size());
+  run_shapes(packed, model, mesher, works);
+  for (std::size_t k = 0; k < works.size(); ++k) {
+    if (!works[k].status.ok()) return in_shape(model, k, works[k].status);
+    made.open_edges += packed.sets[k].count * works[k].open_edges;
+    made.assembly.shapes[k].mesh = std::move(works[k].mesh);
+  }
   made.bound += plan->rounding;
   add_file(plan->file, options, box, made);
   return {};

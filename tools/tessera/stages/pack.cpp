@@ -1,7 +1,10 @@
 #include "stages/pack.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
+#include "console/progress.h"
 #include "tessera/edge_matching.h"
 #include "tessera/topology.h"
 
@@ -60,36 +63,42 @@ Status join_shapes(Model& model) {
   return {};
 }
 
-/// Packs the faces of a shape. An instance of it has the surfaces from `first_surface` on, which messages name; lengths
-/// grow by at most `stretch` where instances stand.
-Result<PatchSet> pack_shape(const Loaded& loaded, std::size_t shape, const PackedSet& packed,
-                            const PackOptions& options, Timings& timings) {
-  const auto phase = timings.phase("pack");
+/// Packs the faces of a shape, whose lengths grow by at most `stretch` where instances stand.
+Result<PatchSet> pack_shape(const Loaded& loaded, const Shape& stated, double stretch, const PackOptions& options) {
   PatchSetOptions packing;
   packing.trims = !options.untrimmed;
   FitOptions fit = loaded.fit;
-  if (packed.stretch > 0) fit.tolerance /= packed.stretch;
+  if (stretch > 0) fit.tolerance /= stretch;
   // Files may leave it to their readers to find which edges are the same. Where that fails, faces stay unconnected.
-  const Shape& stated = loaded.model.shapes[shape];
   const Result<std::optional<JoinedShape>> joined =
       packing.trims ? joined_if_free(stated) : Result<std::optional<JoinedShape>>(std::optional<JoinedShape>());
-  const Shape& used = joined && *joined ? (*joined)->shape : stated;
-  return with_places(loaded, packed.first_surface, make_patch_set(used, packing, fit));
+  return make_patch_set(joined && *joined ? (*joined)->shape : stated, packing, fit);
 }
 
-/// Packs all shapes that have instances.
+/// Packs all shapes that have instances, side by side. Messages name the surfaces of a shape's first instance.
 Result<Packed> pack_shapes(const Loaded& loaded, const PackOptions& options, Timings& timings) {
+  const auto phase = timings.phase("pack");
   const Model& model = loaded.model;
+  const std::size_t count = model.shapes.size();
   Packed packed{{}, true};
-  for (std::size_t k = 0; k < model.shapes.size(); ++k) packed.sets.push_back({{}, 0, 0, 0});
+  for (std::size_t k = 0; k < count; ++k) packed.sets.push_back({{}, 0, 0, 0});
   for (const Instance& instance : model.instances) {
     PackedSet& shape = packed.sets[instance.shape];
     if (shape.count++ == 0) shape.first_surface = instance.first_surface;
     shape.stretch = std::max(shape.stretch, instance.placement->norm_bound());
   }
-  for (std::size_t k = 0; k < packed.sets.size(); ++k) {
-    if (packed.sets[k].count == 0 || model.shapes[k].faces.empty()) continue;
-    Result<PatchSet> set = pack_shape(loaded, k, packed.sets[k], options, timings);
+  std::vector<std::optional<Result<PatchSet>>> made(count);
+  PartsProgress progress("packing", count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    if (interrupted()) return;
+    if (packed.sets[k].count > 0 && !model.shapes[k].faces.empty())
+      made[k].emplace(pack_shape(loaded, model.shapes[k], packed.sets[k].stretch, options));
+    progress.tell(k, 1);
+  });
+  if (interrupted()) return Status(StatusCode::cancelled, "interrupted");
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!made[k]) continue;
+    Result<PatchSet> set = with_places(loaded, packed.sets[k].first_surface, *std::move(made[k]));
     if (!set) return set.status();
     packed.sets[k].set = *std::move(set);
   }
