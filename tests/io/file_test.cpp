@@ -52,6 +52,15 @@ TEST(ReadFile, BytesComeAsTheyAre) {
   EXPECT_EQ(*read, bytes);
 }
 
+TEST(ReadFile, LongFilesComeAsTheyAre) {
+  const ScratchFolder folder;
+  std::string bytes((std::size_t{9} << 20) + 77, '\0');
+  for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<char>(k % 251);
+  const Result<std::string> read = read_file(folder.file("a", bytes));
+  ASSERT_TRUE(read.ok());
+  EXPECT_TRUE(*read == bytes);
+}
+
 TEST(ReadFile, WhatCannotBeReadIsNamed) {
   const ScratchFolder folder;
   const std::string missing = folder / "missing", empty = folder.file("empty", "");

@@ -5,17 +5,21 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <system_error>
 
 #include "base/text.h"
 #include "io/file/descriptor.h"
+#include "parallel/long_lists.h"
+#include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 #include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
+constexpr std::size_t piece_bytes = std::size_t{1} << 21;
 constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not use all memory
 
 /// Fills `bytes` from its size `used` on to the end of the file, at most `limit` bytes in all. Returns 0 or an errno.
@@ -35,6 +39,19 @@ int read_to_end(int descriptor, std::string& bytes, std::size_t used, std::size_
   return 0;
 }
 
+/// Fills `bytes` with those of a long file that begin at 0, by several threads. Returns false if they cannot be read.
+bool read_pieces(int descriptor, std::string& bytes) {
+  std::atomic<bool> has_failed = false;
+  const Status status = parallel_for(bytes.size(), piece_bytes, {}, [&](std::size_t begin, std::size_t end) {
+    while (begin < end && !has_failed) {
+      const ssize_t got = ::pread(descriptor, bytes.data() + begin, end - begin, static_cast<off_t>(begin));
+      if (got > 0) begin += static_cast<std::size_t>(got);
+      if (got == 0 || (got < 0 && errno != EINTR)) has_failed = true;
+    }
+  });
+  return status.ok() && !has_failed;
+}
+
 /// Does what read_file() says, but may throw.
 Result<std::string> read_whole(const std::filesystem::path& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
@@ -49,8 +66,16 @@ Result<std::string> read_whole(const std::filesystem::path& path) {
                                                  " bytes, the memory of this machine " + text(memory));
   std::string bytes;
   // One byte more than the file has: the read that finds the end then needs no more memory.
-  if (regular) bytes.resize(static_cast<std::size_t>(facts.st_size) + 1);
-  const int error = read_to_end(file.number(), bytes, 0, regular ? bytes.max_size() : pipe_limit);
+  std::size_t used = 0;
+  if (regular) {
+    const auto size = static_cast<std::size_t>(facts.st_size);
+    resize({{size_of(bytes, size, 1)}});
+    if (size >= 2 * piece_bytes && read_pieces(file.number(), bytes) &&
+        ::lseek(file.number(), facts.st_size, SEEK_SET) == facts.st_size)
+      used = size;
+    bytes.resize(size + 1);
+  }
+  const int error = read_to_end(file.number(), bytes, used, regular ? bytes.max_size() : pipe_limit);
   if (error != 0) return io_failure(path, "cannot be read", error);
   if (bytes.empty()) return Status(StatusCode::parse_error, path.string() + ": the file is empty");
   return bytes;

@@ -128,6 +128,20 @@ class BptReader : public ItemReader {
     return static_cast<std::size_t>(std::min(static_cast<std::uint64_t>(count_), bytes / shortest_patch + 1));
   }
 
+  std::unique_ptr<ItemReader> for_rest() const override {
+    return std::make_unique<BptReader>(static_cast<std::size_t>(count_));
+  }
+
+  /// The degrees usually fill a line.
+  bool seems_item(TextCursor& line) const override {
+    for (int k = 0; k < 2; ++k) {
+      std::int64_t degree = 0;
+      line.skip_blanks();
+      if (!line.take_number(degree) || degree < 1 || degree > max_degree) return false;
+    }
+    return line.take_line_end();
+  }
+
  private:
   PatchPlace place(std::size_t item) const { return {static_cast<std::int64_t>(item), count_}; }
 

@@ -307,6 +307,8 @@ class G2Reader : public ItemReader {
   }
 
   std::size_t expected(std::uint64_t) const override { return 0; }
+  std::unique_ptr<ItemReader> for_rest() const override { return std::make_unique<G2Reader>(); }
+  bool seems_item(TextCursor& line) const override { return take_header(line, true) != 0; }
 };
 
 }  // namespace

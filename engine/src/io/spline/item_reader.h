@@ -58,6 +58,10 @@ class ItemReader {
   virtual Status end(TextCursor& cursor, const PassedOver* nothing) const = 0;
   /// The most surfaces that a file of so many bytes may have, or 0 if they are not known before.
   virtual std::size_t expected(std::uint64_t bytes) const = 0;
+  /// A reader of items further on in the same file.
+  virtual std::unique_ptr<ItemReader> for_rest() const = 0;
+  /// Whether an item seems to begin with this line. Takes it, or a part of it.
+  virtual bool seems_item(TextCursor& line) const = 0;
 };
 
 /// `count`: the number of patches that the file states, for texts that begin after it.
@@ -118,7 +122,7 @@ class ItemWalk {
   std::size_t swapped_ = 0;
 };
 
-/// Reads all surfaces of a text; `name` stands for the file in messages.
+/// Reads all surfaces of a text, long ones in pieces by several threads; `name` stands for the file in messages.
 Result<Model> read_items(ItemReader& reader, std::string_view text, std::string_view name);
 
 }}  // namespace tessera::abi_0_1

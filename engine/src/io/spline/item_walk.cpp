@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "io/file/make_room.h"
 #include "io/spline/item_reader.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -68,25 +67,6 @@ std::vector<std::string> ItemWalk::warnings() const {
     sentences.push_back(std::string(name_) + ": " + counted(swapped_, "elementary surface") +
                         (swapped_ == 1 ? " has" : " have") + " u and v swapped in the file, but not here");
   return sentences;
-}
-
-Result<Model> read_items(ItemReader& reader, std::string_view text, std::string_view name) {
-  Model model;
-  ItemWalk walk(reader, name, {});
-  const Status status = walk.go(
-      {}, text.size(),
-      [&](std::uint64_t, std::size_t, std::string_view) {
-        return TextWindow{text, 0};
-      },
-      [&](ReadItem& item) {
-        if (!item.surface) return;
-        if (model.surfaces.empty()) model.surfaces.reserve(reader.expected(text.size()));
-        make_room(model.surfaces, walk.offset(), text.size());
-        model.surfaces.push_back(*std::move(item.surface));
-      });
-  if (!status.ok()) return status;
-  model.warnings = walk.warnings();
-  return model;
 }
 
 }}  // namespace tessera::abi_0_1

@@ -1,0 +1,30 @@
+#pragma once
+// Lists that are about to be filled, and so long that the system takes longer to hand out their pages than threads to
+// fill them.
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "base/internal_export.h"
+
+namespace tessera { inline namespace abi_0_1 {
+
+/// A list with room for the elements that it will have.
+struct ListSize {
+  std::span<std::byte> memory;   ///< of these elements
+  std::function<void()> resize;  ///< gives the list its size; must not throw
+};
+
+/// Makes room for `count` elements of a vector or string, and for `spare` more. The list must stay where it is. Throws std::bad_alloc.
+template <class List>
+ListSize size_of(List& list, std::size_t count, std::size_t spare = 0) {
+  list.reserve(count + spare);
+  const auto resize = [&list, count] { list.resize(count); };
+  return {{reinterpret_cast<std::byte*>(list.data()), count * sizeof *list.data()}, resize};
+}
+
+/// Gives lists their sizes, by several threads if they are long. Throws std::bad_alloc.
+void resize(std::span<const ListSize> lists);
+
+}}  // namespace tessera::abi_0_1
