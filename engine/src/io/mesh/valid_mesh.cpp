@@ -2,38 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <string>
 
 #include "io/mesh/mesh_formats.h"
-#include "parallel/parallel_for.h"
+#include "parallel/least_index.h"
 #include "tess/mesh/mesh_parts.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr std::size_t values_per_piece = std::size_t{1} << 16;
-
 Status invalid(std::string message, std::size_t index) {
   return {StatusCode::invalid_argument, std::move(message), static_cast<std::ptrdiff_t>(index)};
-}
-
-/// The least k below `count` that find(begin, end) finds in the pieces of [0, count), or `count` if there is none.
-/// `find` returns `end` if it finds none.
-template <class Find>
-Result<std::size_t> first_of(std::size_t count, const Find& find) {
-  std::atomic<std::size_t> found = count;
-  Status status = parallel_for(count, values_per_piece, {}, [&](std::size_t begin, std::size_t end) {
-    const std::size_t k = find(begin, end);
-    if (k == end) return;
-    for (std::size_t least = found; k < least && !found.compare_exchange_weak(least, k);) {
-    }
-  });
-  if (!status.ok()) return status;
-  return found.load();
 }
 
 /// The first of [begin, end) for which `bad` holds, or `end`. Searches only if there is one: the test whether there is
@@ -49,7 +31,7 @@ std::size_t first_bad(std::size_t begin, std::size_t end, const Bad& bad) {
 
 /// The first value that is not finite, or whose magnitude is above `bound`.
 Result<std::size_t> first_beyond(std::span<const float> values, float bound) {
-  return first_of(values.size(), [&](std::size_t begin, std::size_t end) {
+  return find_first(values.size(), [&](std::size_t begin, std::size_t end) {
     return first_bad(begin, end, [&](std::size_t k) { return !(std::abs(values[k]) <= bound); });
   });
 }
@@ -90,7 +72,7 @@ Status check_lengths(const Mesh& mesh) {
 Status check_indices(const Mesh& mesh) {
   const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
   for (const std::span<const std::uint32_t> indices : {std::span(mesh.indices), std::span(mesh.quads)}) {
-    const Result<std::size_t> bad = first_of(indices.size(), [&](std::size_t begin, std::size_t end) {
+    const Result<std::size_t> bad = find_first(indices.size(), [&](std::size_t begin, std::size_t end) {
       return first_bad(begin, end, [&](std::size_t k) { return indices[k] >= vertices; });
     });
     if (!bad) return bad.status();

@@ -1,8 +1,10 @@
 #include "tess/cells/mesh_faces.h"
 
+#include <cstring>
 #include <string>
 
 #include "base/text.h"
+#include "parallel/least_index.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -12,28 +14,44 @@ Status bad_face(const char* face, std::size_t place, const std::string& why) {
           static_cast<std::ptrdiff_t>(place)};
 }
 
+/// The first of `indices` that is not below `limit`, or their number.
+Result<std::size_t> first_beyond(std::span<const std::uint32_t> indices, std::size_t limit) {
+  return find_first(indices.size(), [&](std::size_t begin, std::size_t end) {
+    while (begin < end && indices[begin] < limit) ++begin;
+    return begin;
+  });
+}
+
 }  // namespace
 
 Status check_face_corners(const char* face, std::span<const std::uint32_t> indices, std::size_t corners,
                           std::size_t vertices) {
-  for (std::size_t k = 0; k < indices.size(); ++k)
-    if (indices[k] >= vertices)
-      return bad_face(face, k / corners,
-                      "has the vertex " + std::to_string(indices[k]) + ", there are " + std::to_string(vertices));
-  return {};
+  const Result<std::size_t> k = first_beyond(indices, vertices);
+  if (!k || *k == indices.size()) return k.status();
+  return bad_face(face, *k / corners,
+                  "has the vertex " + std::to_string(indices[*k]) + ", there are " + std::to_string(vertices));
 }
 
 Status check_face_patches(const Mesh& mesh, std::size_t patches) {
   const auto check = [&](const char* face, std::span<const std::uint32_t> of, std::size_t faces) -> Status {
     if (of.size() != faces)
       return {StatusCode::count_mismatch, counted(of.size(), "patch", "patches") + " for " + counted(faces, face)};
-    for (std::size_t k = 0; k < of.size(); ++k)
-      if (of[k] >= patches)
-        return bad_face(face, k, "is of patch " + std::to_string(of[k]) + ", there are " + std::to_string(patches));
-    return {};
+    const Result<std::size_t> k = first_beyond(of, patches);
+    if (!k || *k == of.size()) return k.status();
+    return bad_face(face, *k, "is of patch " + std::to_string(of[*k]) + ", there are " + std::to_string(patches));
   };
   const Status status = check("triangle", mesh.patches, mesh.triangle_count());
   return status.ok() ? check("quad", mesh.quad_patches, mesh.quad_count()) : status;
+}
+
+std::size_t equal_values(std::span<const std::uint32_t> values, std::size_t first) {
+  // All of a block are equal if each equals the next; a comparison of memory looks at many at once.
+  constexpr std::size_t block = 64;
+  std::size_t at = first;
+  while (at + block < values.size() && std::memcmp(&values[at], &values[at + 1], block * sizeof(std::uint32_t)) == 0)
+    at += block;
+  while (at < values.size() && values[at] == values[first]) ++at;
+  return at - first;
 }
 
 }}  // namespace tessera::abi_0_1

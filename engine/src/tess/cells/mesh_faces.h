@@ -18,17 +18,27 @@ Status check_face_corners(const char* face, std::span<const std::uint32_t> indic
 /// (index = the face).
 Status check_face_patches(const Mesh& mesh, std::size_t patches);
 
-/// Calls visit(patch, is_quad, t, q) for each face in the order of the patches, the next triangle or quad with the
-/// lower one: triangle `t`, or quad `q`. check_face_patches() has checked the mesh. Ends at an error of a visit, which
-/// it returns.
+/// Faces of one patch that follow each other.
+struct FaceRun {
+  std::uint32_t patch;
+  bool is_quads;
+  std::size_t first_triangle, first_quad;  ///< the number of the run's first face, and of the next of the other kind
+  std::size_t count;
+};
+/// Returns how many values from `first` on equal that one, at least 1.
+std::size_t equal_values(std::span<const std::uint32_t> values, std::size_t first);
+
+/// Calls visit(run) for all faces in the order of the patches, the next triangles or quads with the lower one.
+/// check_face_patches() has checked the mesh. Ends at an error of a visit, which it returns.
 template <class Visit>
 Status for_faces_by_patch(const Mesh& mesh, Visit visit) {
   for (std::size_t t = 0, q = 0; t < mesh.patches.size() || q < mesh.quad_patches.size();) {
-    const bool is_quad =
+    const bool is_quads =
         t == mesh.patches.size() || (q < mesh.quad_patches.size() && mesh.quad_patches[q] < mesh.patches[t]);
-    if (Status status = visit(is_quad ? mesh.quad_patches[q] : mesh.patches[t], is_quad, t, q); !status.ok())
-      return status;
-    ++(is_quad ? q : t);
+    const std::size_t count = is_quads ? equal_values(mesh.quad_patches, q) : equal_values(mesh.patches, t);
+    const Status status = visit(FaceRun{is_quads ? mesh.quad_patches[q] : mesh.patches[t], is_quads, t, q, count});
+    if (!status.ok()) return status;
+    (is_quads ? q : t) += count;
   }
   return {};
 }

@@ -12,31 +12,30 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// Collects ranges face by face.
+/// Collects the ranges of the faces of one surface after the other.
 class RangeList {
  public:
   RangeList(const Mesh& mesh, const PatchSet& set, std::span<const float> bounds)
       : mesh_(mesh), set_(set), bounds_(bounds) {}
 
-  /// Adds the next face: triangle `t`, or quad `q`, which comes after `t` triangles.
-  void add(std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
-    const std::uint32_t surface = set_.source(patch).surface;
+  void add(const FaceRun& run) {
+    const std::uint32_t surface = set_.source(run.patch).surface;
     if (ranges_.empty() || ranges_.back().surface != surface) {
       end();
       MeshRange& next = ranges_.emplace_back();
-      next.surface = surface, next.first_triangle = t, next.first_quad = q;
+      next.surface = surface, next.first_triangle = run.first_triangle, next.first_quad = run.first_quad;
       lowest_ = std::numeric_limits<std::size_t>::max(), highest_ = 0;
     }
     MeshRange& range = ranges_.back();
-    ++(is_quad ? range.quad_count : range.triangle_count);
+    (run.is_quads ? range.quad_count : range.triangle_count) += run.count;
     range.bound =
-        std::max(range.bound, bounds_.empty() ? std::numeric_limits<double>::infinity() : double(bounds_[patch]));
-    const std::size_t corners = is_quad ? 4 : 3;
-    const std::uint32_t* const corner = is_quad ? &mesh_.quads[4 * q] : &mesh_.indices[3 * t];
-    for (std::size_t k = 0; k < corners; ++k) {
-      lowest_ = std::min<std::size_t>(lowest_, corner[k]);
-      highest_ = std::max<std::size_t>(highest_, corner[k]);
-      range.box.extend(vertex_of(mesh_, corner[k]));
+        std::max(range.bound, bounds_.empty() ? std::numeric_limits<double>::infinity() : double(bounds_[run.patch]));
+    const auto corners = run.is_quads ? std::span(mesh_.quads).subspan(4 * run.first_quad, 4 * run.count)
+                                      : std::span(mesh_.indices).subspan(3 * run.first_triangle, 3 * run.count);
+    for (const std::uint32_t corner : corners) {
+      lowest_ = std::min<std::size_t>(lowest_, corner);
+      highest_ = std::max<std::size_t>(highest_, corner);
+      range.box.extend(vertex_of(mesh_, corner));
     }
   }
   std::vector<MeshRange> take() && {
@@ -68,8 +67,8 @@ Result<std::vector<MeshRange>> surface_ranges(const Mesh& mesh, const PatchSet& 
       return status;
     if (Status status = check_face_corners("quad", mesh.quads, 4, mesh.vertex_count()); !status.ok()) return status;
     RangeList ranges(mesh, set, bounds);
-    (void)for_faces_by_patch(mesh, [&](std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
-      ranges.add(patch, is_quad, t, q);
+    (void)for_faces_by_patch(mesh, [&](const FaceRun& run) {
+      ranges.add(run);
       return Status();
     });
     return std::move(ranges).take();

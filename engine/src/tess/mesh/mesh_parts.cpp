@@ -40,30 +40,28 @@ std::optional<Colour> colour_of(const Model& model, std::size_t surface) {
   return own ? own : instance.colour;
 }
 
-/// Builds parts face by face.
+/// Builds parts of the faces of one surface after the other.
 class PartList {
  public:
   PartList(const PatchSet& set, const Surfaces& surfaces) : set_(set), surfaces_(surfaces) {}
 
-  /// Adds a face: triangle `t`, or quad `q`, which comes after `t` triangles. Errors: invalid_argument (no such
-  /// surface).
-  Status add(std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
-    if (parts_.empty() || patch != patch_) {
-      const std::size_t surface = set_.source(patch).surface;
-      if (surface >= surfaces_.count)
-        return {StatusCode::invalid_argument,
-                std::string(is_quad ? "quad " : "triangle ") + std::to_string(is_quad ? q : t) + " is of " +
-                    surfaces_.kind + " " + std::to_string(surface) + ", there are " + std::to_string(surfaces_.count),
-                static_cast<std::ptrdiff_t>(is_quad ? q : t)};
-      if (parts_.empty() || surface != surface_) {
-        parts_.push_back(surfaces_.part(surface));
-        parts_.back().first_triangle = t;
-        parts_.back().first_quad = q;
-      }
-      patch_ = patch;
-      surface_ = surface;
+  /// Errors: invalid_argument (no such surface).
+  Status add(const FaceRun& run) {
+    const std::size_t surface = set_.source(run.patch).surface;
+    if (surface >= surfaces_.count) {
+      const std::size_t face = run.is_quads ? run.first_quad : run.first_triangle;
+      return {StatusCode::invalid_argument,
+              std::string(run.is_quads ? "quad " : "triangle ") + std::to_string(face) + " is of " + surfaces_.kind +
+                  " " + std::to_string(surface) + ", there are " + std::to_string(surfaces_.count),
+              static_cast<std::ptrdiff_t>(face)};
     }
-    ++(is_quad ? parts_.back().quad_count : parts_.back().triangle_count);
+    if (parts_.empty() || surface != surface_) {
+      parts_.push_back(surfaces_.part(surface));
+      parts_.back().first_triangle = run.first_triangle;
+      parts_.back().first_quad = run.first_quad;
+    }
+    surface_ = surface;
+    (run.is_quads ? parts_.back().quad_count : parts_.back().triangle_count) += run.count;
     return {};
   }
 
@@ -73,17 +71,14 @@ class PartList {
   const PatchSet& set_;
   const Surfaces& surfaces_;
   std::vector<MeshPart> parts_;
-  std::uint32_t patch_ = 0;  ///< that of the last face
-  std::size_t surface_ = 0;
+  std::size_t surface_ = 0;  ///< that of the last part
 };
 
 Result<std::vector<MeshPart>> parts_of(const Mesh& mesh, const PatchSet& set, const Surfaces& surfaces) {
   if (Status status = check_face_patches(mesh, set.patch_count()); !status.ok()) return status;
   PartList parts(set, surfaces);
-  const auto add = [&](std::uint32_t patch, bool is_quad, std::size_t t, std::size_t q) {
-    return parts.add(patch, is_quad, t, q);
-  };
-  if (Status status = for_faces_by_patch(mesh, add); !status.ok()) return status;
+  const Status status = for_faces_by_patch(mesh, [&](const FaceRun& run) { return parts.add(run); });
+  if (!status.ok()) return status;
   return std::move(parts).take();
 }
 

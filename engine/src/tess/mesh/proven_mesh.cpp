@@ -210,11 +210,7 @@ void ProvenMesh::weld_shared_corners() {
 }
 
 Mesh ProvenMesh::allocate() const {
-  Mesh mesh = empty_mesh(capacity(), origin_);
-  if (!has_normals()) mesh.normals.clear();
-  if (!has_parameters()) mesh.parameters.clear();
-  if (plan_.patches().has_f64_positions) mesh.model_positions.resize(mesh.positions.size());
-  return mesh;
+  return empty_mesh(capacity(), origin_, {has_normals(), has_parameters(), plan_.patches().has_f64_positions});
 }
 
 Status ProvenMesh::check_attributes(const MeshViews& out) const {

@@ -8,6 +8,7 @@
 #include "block/patch_set_impl.h"
 #include "eval/grid_checks.h"
 #include "parallel/least_index.h"
+#include "parallel/long_lists.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -67,17 +68,19 @@ Status check_lengths(const MeshViews& out, const MeshCapacity& wanted, bool f64)
 
 }  // namespace
 
-Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin) {
+Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin, const MeshArrays& arrays) {
   Mesh mesh;
   mesh.origin = origin;
-  mesh.positions.reserve(3 * capacity.vertices + 1);  // RayScene::make() needs room for one more number
-  mesh.positions.resize(3 * capacity.vertices);
-  mesh.normals.resize(3 * capacity.vertices);
-  mesh.parameters.resize(2 * capacity.vertices);
-  mesh.patches.resize(capacity.triangles);
-  mesh.indices.resize(3 * capacity.triangles);
-  mesh.quads.resize(4 * capacity.quads);
-  mesh.quad_patches.resize(capacity.quads);
+  const std::size_t vertices = capacity.vertices, triangles = capacity.triangles, quads = capacity.quads;
+  const ListSize sizes[] = {size_of(mesh.positions, 3 * vertices, 1),  // RayScene::make() needs room for one more
+                            size_of(mesh.normals, arrays.normals ? 3 * vertices : 0),
+                            size_of(mesh.parameters, arrays.parameters ? 2 * vertices : 0),
+                            size_of(mesh.model_positions, arrays.model_positions ? 3 * vertices : 0),
+                            size_of(mesh.indices, 3 * triangles),
+                            size_of(mesh.patches, triangles),
+                            size_of(mesh.quads, 4 * quads),
+                            size_of(mesh.quad_patches, quads)};
+  resize(sizes);
   return mesh;
 }
 

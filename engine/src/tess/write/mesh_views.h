@@ -9,8 +9,12 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Returns a mesh with all attributes, filled with zeros.
-Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin);
+/// The arrays of a mesh beside positions, patches and faces.
+struct MeshArrays {
+  bool normals = true, parameters = true, model_positions = false;
+};
+/// Returns a mesh with these arrays, filled with zeros by several threads. Throws std::bad_alloc.
+Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin, const MeshArrays& arrays = {});
 
 /// Checks views that a mesh is written to. `f64`: positions in double are required and those in float are optional;
 /// else there must be no positions in double. Errors: buffer_too_small, invalid_argument (no positions; a null
