@@ -10,6 +10,7 @@
 #                                               the command line: --json; tests: values of peers
 #   muParser          libmuparser-dev 2.3         tessera::io: expressions in models (engine/src/io alone)
 #   zlib              zlib1g-dev 1.2              tessera::io: files packed by gzip (engine/src/io alone); optional
+#   meshoptimizer     libmeshoptimizer-dev 0.18   tessera::io: packed glTF (engine/src/io/mesh alone); optional
 #   libpng            libpng-dev 1.6              the command line and the benchmarks: pictures
 #   OpenEXR           libopenexr-dev 3.1          the command line: float pictures; tests: its reader
 #   GoogleTest        libgtest-dev 1.12           tests (and libgmock-dev: its matchers); bench: two reports
@@ -65,6 +66,18 @@ if(TESSERA_BUILD_IO)
     set(tessera_zlib ZLIB::ZLIB)
   else()
     message(STATUS "Packed files (.gz) are not read: zlib is not found (zlib1g-dev)")
+  endif()
+endif()
+# Whether tessera::io packs and unpacks glTF, and what it links for that.
+set(TESSERA_HAS_MESHOPT OFF)
+set(tessera_meshopt)
+if(TESSERA_BUILD_IO)
+  find_package(meshoptimizer QUIET)
+  if(meshoptimizer_FOUND)
+    set(TESSERA_HAS_MESHOPT ON)
+    set(tessera_meshopt meshoptimizer::meshoptimizer)
+  else()
+    message(STATUS "Packed glTF is neither read nor written: meshoptimizer is not found (libmeshoptimizer-dev)")
   endif()
 endif()
 # Whether tessera::occt is built, and tessera-cad-reader, which stands on it.

@@ -60,8 +60,12 @@ if(TESSERA_BUILD_IO)
   if(TESSERA_HAS_ZLIB)
     set(zlib_package zlib)
   endif()
+  set(meshopt_library)
+  if(TESSERA_HAS_MESHOPT)
+    set(meshopt_library -lmeshoptimizer)  # its package has no file for pkg-config
+  endif()
   tessera_install_pkg_config(tessera-io tessera_io_library "Tessera's readers of surfaces and writers of meshes" ON tessera
-    REQUIRES muparser ${zlib_package})
+    REQUIRES muparser ${zlib_package} LIBS ${meshopt_library})
 else()
   list(APPEND left_out PATTERN "io.h" EXCLUDE PATTERN "cad.h" EXCLUDE PATTERN "surface_file.h" EXCLUDE)
 endif()

@@ -31,7 +31,7 @@ fail() {
 
 # cmake/TesseraDependencies.cmake says what each package is for.
 demo_packages=(g++ cmake ninja-build libtbb-dev libxsimd-dev libembree-dev libcli11-dev nlohmann-json3-dev libmuparser-dev
-  zlib1g-dev libpng-dev libopenexr-dev)
+  zlib1g-dev libmeshoptimizer-dev libpng-dev libopenexr-dev)
 cad_packages=(libocct-data-exchange-dev)
 mpi_packages=(libopenmpi-dev openmpi-bin)
 python_packages=("${cad_packages[@]}" patchelf python3-numpy python3-pip python3-setuptools python3-venv python3-wheel)

@@ -101,6 +101,22 @@ TEST_F(Tolerances, CellsAreQuads) {
     expect_failure({"tessellate", teapot, "-o", name, "--grid", "4x3", "--quads"}, 2, "can hold only triangles");
 }
 
+TEST_F(Tolerances, OnlyGltfIsCompressed) {
+  output_of({"tessellate", teapot, "-o", "plain.glb", "--grid", "9x9"});
+  for (const char* const name : {"a.stl", "a.ply", "a.obj"})
+    expect_failure({"tessellate", teapot, "-o", name, "--compress"}, 2, "--compress: is for .glb and .gltf, found .");
+  const ToolRun made = run({"tessellate", teapot, "-o", "packed.glb", "--grid", "9x9", "--compress"});
+  if (made.status != 0) {
+    EXPECT_NE(made.errors.find("it lacks meshoptimizer"), std::string::npos) << made.errors;
+    return;
+  }
+  EXPECT_LT(content_of(folder_ / "packed.glb").size(), content_of(folder_ / "plain.glb").size() * 2 / 3);
+  const auto report = [&](const char* name) { return json::parse(run({"check", name, "--json"}).output); };
+  json plain = report("plain.glb"), packed = report("packed.glb");
+  EXPECT_EQ(plain["distinct_positions"], packed["distinct_positions"]);
+  EXPECT_EQ(plain["triangles"], packed["triangles"]);
+}
+
 TEST_F(Tolerances, PositionsInDouble) {
   const json single = made({"--relative", "0.003"}), twice = made({"--relative", "0.003", "--precision", "double"});
   EXPECT_EQ(single["precision"], "float");

@@ -127,6 +127,10 @@ struct MeshWriteOptions {
   /// .glb and .gltf, whose viewers show +Y upwards: the axis of the mesh that is to point there. With z, the node above
   /// all others turns the model; with y, nothing is turned.
   UpAxis up = UpAxis::z;
+  /// .glb and .gltf: whether the numbers are packed by the extension EXT_meshopt_compression, which viewers must know.
+  /// All numbers are kept to the bit, and the order of vertices and triangles; a triangle may begin at another of its
+  /// corners. Other formats ignore it.
+  bool packed = false;
 };
 
 /// Writes a mesh in the model's coordinates; only glTF turns them, by a node. The file appears whole or not at all: it
@@ -146,7 +150,8 @@ struct MeshWriteOptions {
 ///
 /// .stl and glTF have no faces of four corners and get two triangles per quad, see split_quads().
 ///
-/// Errors: io_error, unsupported (the extension; a glTF file beyond 2 GiB); for a mesh that no file can hold
+/// Errors: io_error, unsupported (the extension; a glTF file beyond 2 GiB; one to be packed, in a build without
+/// meshoptimizer); for a mesh that no file can hold
 /// invalid_argument (no vertices; for .stl, .glb and .gltf no triangles; an index or a part out of range),
 /// count_mismatch, non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const MeshWriteOptions& options = {});
@@ -188,8 +193,8 @@ struct MeshReadOptions {
 ///   where their bits are equal.
 /// - .glb and .gltf: glTF 2.0, all triangles of the default scene, placed by its nodes; the translation of the first
 ///   mesh is the origin. Normals and texture coordinates are kept if all triangles have them. Buffers may lie in files
-///   beside the file or below, but not behind symbolic links out of its folder. Sparse and compressed accessors are
-///   errors; points, lines, skins, morph targets and animations are skipped with a warning.
+///   beside the file or below, but not behind symbolic links out of its folder. Numbers packed by
+///   EXT_meshopt_compression are unpacked; sparse accessors and other compressed ones are errors; points, lines, skins, morph targets and animations are skipped with a warning.
 ///
 /// Errors: io_error, parse_error, unsupported. Memory: for glTF at most 64 times the file and its buffers plus 16 MiB,
 /// however often nodes place a mesh.

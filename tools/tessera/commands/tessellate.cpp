@@ -90,6 +90,16 @@ std::string fault_of_mesh_file(const std::string& path) {
   return is_folder(path) || is_stream(path) || is_index(path) ? "" : check_mesh_format(path).message();
 }
 
+/// Throws UsageError if a file that has no packed form is to be packed.
+void check_compression(const Plan& plan, const WriteOptions& options) {
+  if (!options.mesh.packed) return;
+  for (const Job& job : plan.jobs) {
+    const std::string extension = lower_extension(format_path(job.output, options.format));
+    if (extension != ".glb" && extension != ".gltf")
+      throw UsageError("--compress", "is for .glb and .gltf, found " + (extension.empty() ? job.output : extension));
+  }
+}
+
 }  // namespace
 
 void add_tessellate(Command& tool, Session& session) {
@@ -107,6 +117,10 @@ void add_tessellate(Command& tool, Session& session) {
       "--up", {"z", "y"},
       "The axis of the model that points up: .glb and .gltf are turned so that viewers show it upwards [z]",
       [options](const std::string& text) { options->write.mesh.up = text == "y" ? UpAxis::y : UpAxis::z; });
+  command.add_flag("--compress",
+                   "Pack the numbers of .glb and .gltf, without a change of a bit, by EXT_meshopt_compression, which "
+                   "most viewers know",
+                   options->write.mesh.packed);
   const std::vector<const Option*> density = add_density(command, options->mesh);
   add_mesh_options(command, options->mesh);
   add_reading(command, options->load);
@@ -125,6 +139,7 @@ void add_tessellate(Command& tool, Session& session) {
     check_batch(session.common.batch, plan);
     check_pieces(*options, plan);
     check_formats(plan, options->mesh);
+    check_compression(plan, options->write);
     session.choose(plan, options, run_tessellate);
   };
 }

@@ -47,8 +47,7 @@ Status write(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options,
     primitive.material = content.material(part.colour);
     content.add_node({.name = part.name, .mesh = content.add_mesh(part.name, {&primitive, 1})});
   }
-  content.write(out, binary);
-  return {};
+  return content.write(out, binary, options.packed);
 }
 
 /// Adds the vertices and triangles of a shape, by colours in the order of their first parts.
@@ -127,7 +126,7 @@ class AssemblyContent {
     for (const MeshInstance& instance : assembly.instances) add(instance);
   }
 
-  void write(OutputFile& out, bool binary) const { content_.write(out, binary); }
+  Status write(OutputFile& out, bool binary, bool packed) const { return content_.write(out, binary, packed); }
 
  private:
   static Affine scaled(double scale) { return Affine::scaled({scale, scale, scale}); }
@@ -175,8 +174,7 @@ Status write(const MeshAssembly& assembly, OutputFile& out, const MeshWriteOptio
     triangles += assembly.shapes[instance.shape].mesh.triangle_count();
   if (triangles == 0) return no_triangles();
   if (Status status = check_size(bytes); !status.ok()) return status;
-  AssemblyContent(assembly, options.up).write(out, binary);
-  return {};
+  return AssemblyContent(assembly, options.up).write(out, binary, options.packed);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include <type_traits>
 
 #include "io/file/base64.h"
+#include "io/mesh/meshopt.h"
+#include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -124,10 +126,46 @@ std::string_view bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
+/// Sizes are multiples of 4 (section 4.4.3).
+std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
+std::size_t padded_sum(std::span<const std::string> texts) {
+  return std::accumulate(texts.begin(), texts.end(), std::size_t{0},
+                         [](std::size_t sum, const std::string& text) { return sum + padded(text.size()); });
+}
+
 constexpr const char* separator = ",\n";  // objects have lines of their own, for those who read .gltf
 constexpr std::size_t base64_piece = std::size_t{1} << 14;
+constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 constexpr int array_buffer = 34962, element_array_buffer = 34963;  // targets of views, section 5.11.5
 constexpr int unsigned_int = 5125, float_32 = 5126;                // types of components, section 5.1.3
+
+using WriteBuffer = FunctionRef<void(FunctionRef<void(std::string_view)>)>;
+
+/// Writes the chunks of a .glb file (section 4.4); `bytes` is the length of the buffer.
+void write_binary(OutputFile& out, std::string json, std::size_t bytes, WriteBuffer write_buffer) {
+  json.resize(padded(json.size()), ' ');
+  const auto number = [&](std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    out.write(bytes_of(std::span(&word, 1)));
+  };
+  out.write("glTF");
+  number(2), number(12 + 8 + json.size() + 8 + bytes);
+  number(json.size()), out.write("JSON"), out.write(json);
+  number(bytes), out.write(std::string_view("BIN\0", 4));
+  write_buffer([&](std::string_view part) { out.write(part); });
+}
+
+/// Writes JSON with the buffer within it.
+void write_base64(OutputFile& out, const std::array<std::string, 2>& json, WriteBuffer write_buffer) {
+  out.write(json[0]);
+  Base64Encoder encoder;
+  write_buffer([&](std::string_view bytes) {
+    for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), base64_piece)))
+      out.write(encoder.encode(bytes.substr(0, base64_piece)));
+  });
+  out.write(encoder.finish());
+  out.write(json[1]);
+}
 
 }  // namespace
 
@@ -171,8 +209,9 @@ void GltfContent::add_vertices(const Mesh& mesh) {
   ranges_.clear();
   const auto add_values = [&](const std::vector<float>& values, std::size_t components, const Mesh* normals_of) {
     if (values.empty()) return -1;
-    numbers_.push_back({.normals_of = normals_of, .values = values});
-    return add_view(values.size(), components);
+    const int view = add_view(values.size(), components);
+    numbers_.push_back({.view = view, .normals_of = normals_of, .values = values});
+    return view;
   };
   mesh_views_.positions = add_values(mesh.positions, 3, nullptr);
   mesh_views_.normals = add_values(mesh.normals, 3, are_unit(mesh.normals) ? nullptr : &mesh);
@@ -190,18 +229,16 @@ GltfPrimitive GltfContent::add_primitive(IndexRuns indices, std::size_t first, s
       accessors_.add("\"bufferView\":", index_view_, ",\"byteOffset\":", index_bytes_,
                      ",\"componentType\":", unsigned_int, ",\"count\":", index_count, ",\"type\":\"SCALAR\"");
   index_bytes_ += 4 * index_count;
-  numbers_.push_back({.indices = std::move(indices), .first_vertex = static_cast<std::uint32_t>(first)});
+  numbers_.push_back(
+      {.view = index_view_, .indices = std::move(indices), .first_vertex = static_cast<std::uint32_t>(first)});
   return primitive;
 }
 
 /// Adds a view of the next numbers of the buffer: vectors of vertices, or indices, which have 0 components.
 int GltfContent::add_view(std::size_t count, std::size_t components) {
-  std::string stride;
-  if (components > 0) append(stride, ",\"byteStride\":", 4 * components);
-  const std::size_t begin = bytes_;
-  bytes_ += 4 * count;
-  return views_.add("\"buffer\":0,\"byteLength\":", 4 * count, ",\"byteOffset\":", begin, stride,
-                    ",\"target\":", components > 0 ? array_buffer : element_array_buffer);
+  views_.push_back({bytes_, count, components});
+  bytes_ += views_.back().bytes();
+  return static_cast<int>(views_.size()) - 1;
 }
 
 int GltfContent::add_vertex_accessor(int view, std::size_t components, std::size_t first, std::size_t count) {
@@ -221,8 +258,30 @@ const GltfContent::Attributes& GltfContent::attributes(std::size_t first, std::s
   return known->second;
 }
 
-/// The file's JSON: before the text of the buffer, if that is not binary, and after it.
-std::array<std::string, 2> GltfContent::json(bool binary) const {
+/// The views, and what the extension states of the packed ones, which follow each other in the first buffer.
+std::string GltfContent::views_json(std::span<const std::string> packed) const {
+  Objects objects;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < views_.size(); ++k) {
+    const View& view = views_[k];
+    const bool is_vectors = view.components > 0;
+    std::string stride, extension;
+    if (is_vectors) append(stride, ",\"byteStride\":", view.stride());
+    if (!packed.empty()) {
+      append(extension, ",\"extensions\":{\"", meshopt_extension, "\":{\"buffer\":0,\"byteOffset\":", begin,
+             ",\"byteLength\":", packed[k].size(), ",\"byteStride\":", view.stride(),
+             ",\"count\":", view.bytes() / view.stride(), ",\"mode\":\"", is_vectors ? "ATTRIBUTES" : "TRIANGLES",
+             "\"}}");
+      begin += padded(packed[k].size());
+    }
+    objects.add("\"buffer\":", packed.empty() ? 0 : 1, ",\"byteLength\":", view.bytes(), ",\"byteOffset\":", view.begin,
+                stride, ",\"target\":", is_vectors ? array_buffer : element_array_buffer, extension);
+  }
+  return objects.text;
+}
+
+/// The file's JSON: before the text of the first buffer, if that is not binary, and after it.
+std::array<std::string, 2> GltfContent::json(bool binary, std::span<const std::string> packed) const {
   std::vector<int> children(static_cast<std::size_t>(nodes_.count));
   std::iota(children.begin(), children.end(), 1);
   Objects nodes;
@@ -230,64 +289,85 @@ std::array<std::string, 2> GltfContent::json(bool binary) const {
   nodes.add(root, root.empty() || children.empty() ? "" : ",",
             children.empty() ? "" : "\"children\":" + list(children));
   if (nodes_.count > 0) append(nodes.text, separator, nodes_.text);
-  std::array<std::string, 2> text;
-  const auto array = [](const char* name, const Objects& objects) {
-    return std::string(",\n\"") + name + "\":[\n" + objects.text + "\n]";
+  const auto array = [](const char* name, const std::string& objects) {
+    return std::string(",\n\"") + name + "\":[\n" + objects + "\n]";
   };
+  std::array<std::string, 2> text;
   append(text[0],
          "{\"asset\":{\"generator\":\"Tessera\",\"version\":\"2.0\"},\n\"scene\":0,\"scenes\":[{\"nodes\":[0]}]",
-         array("nodes", nodes), array("meshes", meshes_), array("materials", materials_),
-         array("accessors", accessors_), array("bufferViews", views_), ",\n\"buffers\":[{\"byteLength\":", bytes_);
+         array("nodes", nodes.text), array("meshes", meshes_.text), array("materials", materials_.text),
+         array("accessors", accessors_.text), array("bufferViews", views_json(packed)));
+  std::string unpacked;
+  if (!packed.empty()) {
+    for (const char* const list : {"extensionsUsed", "extensionsRequired"})
+      append(text[0], ",\n\"", list, "\":[\"", meshopt_extension, "\"]");
+    append(unpacked, ",\n{\"byteLength\":", bytes_, ",\"extensions\":{\"", meshopt_extension,
+           "\":{\"fallback\":true}}}");
+  }
+  append(text[0], ",\n\"buffers\":[{\"byteLength\":", packed.empty() ? bytes_ : padded_sum(packed));
   if (!binary) text[0] += ",\"uri\":\"data:application/octet-stream;base64,";
-  text[1] = binary ? "}]}" : "\"}]}\n";
+  text[1] = std::string(binary ? "}" : "\"}") + unpacked + (binary ? "]}" : "]}\n");
   return text;
 }
 
-void GltfContent::write_numbers(FunctionRef<void(std::string_view)> write) const {
-  for (const Numbers& numbers : numbers_) {
-    write(numbers.normals_of ? bytes_of(std::span<const float>(unit_normals(*numbers.normals_of)))
-                             : bytes_of(numbers.values));
-    for (std::span<const std::uint32_t> run : numbers.indices) {
-      if (numbers.first_vertex == 0) {
-        write(bytes_of(run));
-        continue;
-      }
-      std::array<std::uint32_t, 4096> shifted;
-      while (!run.empty()) {
-        const std::span part = run.first(std::min(run.size(), shifted.size()));
-        std::ranges::transform(part, shifted.begin(),
-                               [&](std::uint32_t index) { return index - numbers.first_vertex; });
-        write(bytes_of(std::span<const std::uint32_t>(shifted).first(part.size())));
-        run = run.subspan(part.size());
-      }
+void GltfContent::write_numbers(const Numbers& numbers, FunctionRef<void(std::string_view)> write) {
+  write(numbers.normals_of ? bytes_of(std::span<const float>(unit_normals(*numbers.normals_of)))
+                           : bytes_of(numbers.values));
+  for (std::span<const std::uint32_t> run : numbers.indices) {
+    if (numbers.first_vertex == 0) {
+      write(bytes_of(run));
+      continue;
+    }
+    std::array<std::uint32_t, 4096> shifted;
+    while (!run.empty()) {
+      const std::span part = run.first(std::min(run.size(), shifted.size()));
+      std::ranges::transform(part, shifted.begin(), [&](std::uint32_t index) { return index - numbers.first_vertex; });
+      write(bytes_of(std::span<const std::uint32_t>(shifted).first(part.size())));
+      run = run.subspan(part.size());
     }
   }
 }
 
-void GltfContent::write(OutputFile& out, bool binary) const {
-  std::array<std::string, 2> text = json(binary);
-  if (!binary) {
-    out.write(text[0]);
-    Base64Encoder encoder;
-    write_numbers([&](std::string_view bytes) {
-      for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), base64_piece)))
-        out.write(encoder.encode(bytes.substr(0, base64_piece)));
-    });
-    out.write(encoder.finish());
-    out.write(text[1]);
-    return;
+std::string GltfContent::packed_view(std::size_t index) const {
+  const View& view = views_[index];
+  const auto [first, last] = std::ranges::equal_range(numbers_, static_cast<int>(index), {}, &Numbers::view);
+  if (view.components > 0) {
+    std::string packed;
+    write_numbers(*first, [&](std::string_view bytes) { packed = pack_attributes(bytes, view.stride()); });
+    return packed;
   }
-  std::string& chunk = text[0] += text[1];
-  chunk.resize((chunk.size() + 3) / 4 * 4, ' ');  // section 4.4.3
-  const auto number = [&](std::size_t value) {
-    const auto word = static_cast<std::uint32_t>(value);
-    out.write(bytes_of(std::span(&word, 1)));
+  std::vector<std::uint32_t> indices(view.count);
+  char* end = reinterpret_cast<char*>(indices.data());
+  for (auto numbers = first; numbers != last; ++numbers)
+    write_numbers(*numbers, [&](std::string_view bytes) { end = std::ranges::copy(bytes, end).out; });
+  return pack_triangles(indices);
+}
+
+Status GltfContent::write(OutputFile& out, bool binary, bool packed) const {
+  std::vector<std::string> views;
+  if (packed) {
+    if (!has_meshopt())
+      return {StatusCode::unsupported, "this build of Tessera does not pack glTF: it lacks meshoptimizer"};
+    views.resize(views_.size());
+    const Status status =
+        parallel_for(views.size(), 1, {}, [&](std::size_t k, std::size_t) { views[k] = packed_view(k); });
+    if (!status.ok()) return status;
+  }
+  const std::array<std::string, 2> text = json(binary, views);
+  const auto write_buffer = [&](FunctionRef<void(std::string_view)> write) {
+    if (!packed) {
+      for (const Numbers& numbers : numbers_) write_numbers(numbers, write);
+    }
+    for (const std::string& view : views) {
+      write(view);
+      write(std::string_view("\0\0\0", padded(view.size()) - view.size()));
+    }
   };
-  out.write("glTF");
-  number(2), number(12 + 8 + chunk.size() + 8 + bytes_);
-  number(chunk.size()), out.write("JSON"), out.write(chunk);
-  number(bytes_), out.write(std::string_view("BIN\0", 4));
-  write_numbers([&](std::string_view bytes) { out.write(bytes); });
+  if (binary)
+    write_binary(out, text[0] + text[1], packed ? padded_sum(views) : bytes_, write_buffer);
+  else
+    write_base64(out, text, write_buffer);
+  return {};
 }
 
 }}  // namespace tessera::abi_0_1

@@ -1,6 +1,7 @@
 #pragma once
 // The content of a glTF file that is written: numbers in one buffer, materials of colours, meshes and nodes.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -16,6 +17,7 @@
 #include "tessera/colour.h"
 #include "tessera/geometry.h"
 #include "tessera/mesh.h"
+#include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -59,8 +61,10 @@ class GltfContent {
   /// vertices from `first` on, `count` of them, so primitives may share vertices and none is stored twice.
   GltfPrimitive add_primitive(IndexRuns indices, std::size_t first, std::size_t count);
 
-  /// Writes the file, as .glb or as .gltf with the numbers in base64. Failures are the file's.
-  void write(OutputFile& out, bool binary) const;
+  /// Writes the file, as .glb or as .gltf with the numbers in base64. `packed`: whether the numbers are packed by
+  /// EXT_meshopt_compression, all of them before any is written. Failures are the file's. Errors: unsupported (a build
+  /// without meshoptimizer), out_of_memory.
+  Status write(OutputFile& out, bool binary, bool packed) const;
 
  private:
   /// Objects of an array in JSON, as text.
@@ -75,8 +79,15 @@ class GltfContent {
   struct Attributes {
     int positions = -1, normals = -1, parameters = -1;
   };
+  /// A run of the buffer's bytes: vectors, or indices, which have 0 components.
+  struct View {
+    std::size_t begin, count, components;
+    std::size_t stride() const { return 4 * std::max<std::size_t>(components, 1); }
+    std::size_t bytes() const { return 4 * count; }
+  };
   /// A part of the buffer: the normals of a mesh, made of unit length, other numbers, or indices less the first vertex.
   struct Numbers {
+    int view;
     const Mesh* normals_of = nullptr;
     std::span<const float> values = {};
     IndexRuns indices = {};
@@ -86,13 +97,16 @@ class GltfContent {
   int add_view(std::size_t count, std::size_t components);
   int add_vertex_accessor(int view, std::size_t components, std::size_t first, std::size_t count);
   const Attributes& attributes(std::size_t first, std::size_t count);
-  std::array<std::string, 2> json(bool binary) const;
-  void write_numbers(FunctionRef<void(std::string_view)> write) const;
+  std::string packed_view(std::size_t view) const;
+  std::string views_json(std::span<const std::string> packed) const;
+  std::array<std::string, 2> json(bool binary, std::span<const std::string> packed) const;
+  static void write_numbers(const Numbers& numbers, FunctionRef<void(std::string_view)> write);
 
   GltfNode root_;
-  Objects nodes_, meshes_, materials_, accessors_, views_;
-  std::vector<Numbers> numbers_;
-  std::size_t bytes_ = 0;  ///< of the buffer so far
+  Objects nodes_, meshes_, materials_, accessors_;
+  std::vector<View> views_;
+  std::vector<Numbers> numbers_;  ///< by view
+  std::size_t bytes_ = 0;         ///< of the buffer so far
   const Mesh* mesh_ = nullptr;
   Attributes mesh_views_;
   int index_view_ = -1;                                               ///< of mesh_

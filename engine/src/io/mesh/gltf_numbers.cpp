@@ -1,15 +1,18 @@
 #include "io/mesh/gltf_numbers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <span>
 
 #include "io/file/base64.h"
 #include "io/file/relative_path.h"
 #include "io/file/text_cursor.h"
 #include "io/json/json_reader.h"
+#include "io/mesh/meshopt.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -38,6 +41,25 @@ std::size_t size_of_component(std::size_t type) {
     default:
       return 0;
   }
+}
+
+/// What the extension EXT_meshopt_compression states of a view (section "JSON schema updates").
+MeshoptView meshopt_view(const JsonValue& packed) {
+  MeshoptView view;
+  view.count = read_count(member(packed, "count"));
+  view.stride = read_count(member(packed, "byteStride"));
+  const JsonValue mode = member(packed, "mode");
+  const auto choice = [](const JsonValue& value, std::span<const std::string_view> names) {
+    const auto known = std::ranges::find(names, read_text(value));
+    if (known == names.end()) value.fail("found " + quote(value.string()) + ", which the extension does not have");
+    return known - names.begin();
+  };
+  constexpr std::string_view modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
+  constexpr std::string_view filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+  view.mode = static_cast<MeshoptMode>(choice(mode, modes));
+  if (const auto filter = optional_member(packed, "filter"))
+    view.filter = static_cast<MeshoptFilter>(choice(*filter, filters));
+  return view;
 }
 
 std::size_t component_count(std::string_view type) {
@@ -145,16 +167,49 @@ GltfElements GltfNumbers::elements(const JsonValue& index, std::string_view type
 
 std::string_view GltfNumbers::view(const JsonValue& index, std::size_t& stride) {
   const JsonValue view = element("bufferViews", index);
-  const std::string_view all = buffer(member(view, "buffer"));
-  const std::size_t offset = read_count(view, "byteOffset", 0), size = read_count(member(view, "byteLength"));
-  if (offset > all.size() || size > all.size() - offset)
-    view.fail(std::to_string(size) + " bytes from byte " + std::to_string(offset) + " on are not in a buffer of " +
-              std::to_string(all.size()) + " bytes");
   stride = 0;
   constexpr int largest_stride = 252;  // the specification, section 5.11.4
   if (const auto stated = optional_member(view, "byteStride"))
     stride = static_cast<std::size_t>(read_integer(*stated, 1, largest_stride));
+  if (const auto extensions = optional_member(view, "extensions"))
+    if (const auto packed = optional_member(*extensions, "EXT_meshopt_compression"))
+      return unpacked(*packed, read_count(member(view, "byteLength")));
+  return bytes_of(view);
+}
+
+/// The bytes of a buffer that an object with a buffer, an offset and a length states.
+std::string_view GltfNumbers::bytes_of(const JsonValue& range) {
+  const std::string_view all = buffer(member(range, "buffer"));
+  const std::size_t offset = read_count(range, "byteOffset", 0), size = read_count(member(range, "byteLength"));
+  if (offset > all.size() || size > all.size() - offset)
+    range.fail(std::to_string(size) + " bytes from byte " + std::to_string(offset) + " on are not in a buffer of " +
+               std::to_string(all.size()) + " bytes");
   return all.substr(offset, size);
+}
+
+/// The `size` bytes of a view that is packed.
+std::string_view GltfNumbers::unpacked(const JsonValue& packed, std::size_t size) {
+  if (const auto known = unpacked_.find(packed.place()); known != unpacked_.end()) return known->second;
+  const MeshoptView view = meshopt_view(packed);
+  const std::string_view bytes = bytes_of(packed);
+  // The count and the stride are small enough for their product.
+  if (!is_allowed(view) || view.count > std::numeric_limits<std::size_t>::max() / view.stride)
+    packed.fail("elements of this mode and filter cannot be " + std::to_string(view.count) + " of " +
+                std::to_string(view.stride) + " bytes");
+  if (view.count * view.stride != size)
+    packed.fail("expected the view's " + std::to_string(size) + " bytes (byteLength), found " +
+                std::to_string(view.count) + " elements of " + std::to_string(view.stride));
+  constexpr std::size_t times = 256, extra = std::size_t{1} << 20;
+  if (size > times * bytes.size() + extra)
+    packed.fail("it takes more than " + std::to_string(times) + " times its packed bytes and 1 MiB",
+                StatusCode::unsupported);
+  if (!has_meshopt())
+    packed.fail("this build of Tessera does not unpack glTF: it lacks meshoptimizer", StatusCode::unsupported);
+  std::string elements = unpack(view, bytes);
+  if (elements.size() != size) packed.fail("the packed bytes are damaged");
+  decoded_.push_back(std::make_unique<const std::string>(std::move(elements)));
+  loaded_bytes_ += size;
+  return unpacked_[packed.place()] = *decoded_.back();
 }
 
 std::string_view GltfNumbers::buffer(const JsonValue& index) {

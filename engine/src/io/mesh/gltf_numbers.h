@@ -45,6 +45,8 @@ class GltfNumbers {
 
  private:
   std::string_view view(const JsonValue& index, std::size_t& stride);
+  std::string_view bytes_of(const JsonValue& range);
+  std::string_view unpacked(const JsonValue& packed, std::size_t size);
   std::string_view buffer(const JsonValue& index);
   std::string_view load(const JsonValue& buffer, std::size_t size);
   std::string_view load_data(const JsonValue& uri);
@@ -56,6 +58,7 @@ class GltfNumbers {
   std::map<std::string, std::vector<JsonValue>, std::less<>> lists_;
   std::map<std::string, std::unique_ptr<const std::string>> files_;  // by path, so that none is read twice
   std::map<std::size_t, std::string_view> buffers_;                  // by index
+  std::map<std::size_t, std::string_view> unpacked_;                 // views, by place in the text
   std::vector<std::unique_ptr<const std::string>> decoded_;
   std::size_t loaded_bytes_ = 0;
 };

@@ -130,11 +130,12 @@ struct Primitive {
 
 enum Mode : std::size_t { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
-/// Extensions that a file may require although they are not read: they leave positions and indices as they are.
-bool leaves_geometry(std::string_view extension) {
+/// Extensions that a file may require: they are read, or leave positions and indices as they are.
+bool is_known(std::string_view extension) {
   for (const std::string_view begin : {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_"})
     if (extension.starts_with(begin)) return true;
-  return extension == "KHR_mesh_quantization";  // integers are read as any others
+  // Integers are read as any others; packed numbers are unpacked.
+  return extension == "KHR_mesh_quantization" || extension == "EXT_meshopt_compression";
 }
 
 class GltfReader {
@@ -168,7 +169,7 @@ class GltfReader {
       version.fail("found version " + quote(version.string()) + ", this reader knows version 2.0",
                    StatusCode::unsupported);
     for (const JsonValue& extension : numbers_.list("extensionsRequired"))
-      if (!leaves_geometry(read_text(extension)))
+      if (!is_known(read_text(extension)))
         extension.fail("the file needs the extension " + quote(extension.string()) +
                            ", which is not read; export the file without it",
                        StatusCode::unsupported);

@@ -38,7 +38,8 @@ Result<Mesh> parse_stl(std::string_view bytes, std::string_view name, const Mesh
 /// parts. Positions are relative to the origin, which the node that holds them all adds, and turns so that
 /// MeshWriteOptions::up points up. Normals have
 /// unit length, as the format requires: undefined ones become the mean of the triangles around. Parameters are
-/// TEXCOORD_0. Errors: invalid_argument (no triangles), unsupported (more than 2 GiB). Memory: three times the file.
+/// TEXCOORD_0. Errors: invalid_argument (no triangles), unsupported (more than 2 GiB; to be packed, in a build without
+/// meshoptimizer). Memory: the JSON, and the packed numbers where they are packed.
 Status write_glb(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options = {});
 Status write_gltf(const Mesh& mesh, OutputFile& out, const MeshWriteOptions& options = {});
 /// Writes an assembly as glTF 2.0: each shape's numbers once, and one node per instance below a node that turns it up
