@@ -2,7 +2,7 @@
 
 import argparse
 
-from . import baselines, check, compare, count, export, own_program, peers, record, records, report, roofline, track
+from . import baselines, check, compare, count, export, own_program, peers, record, records, report, roofline, serial, track
 from .console import FAILED, GOOD, REGRESSION, SKIPPED, USAGE, Failure, say
 
 DESCRIPTION = """\
@@ -11,6 +11,7 @@ Catches what makes Tessera slower, on machines that do other things as well.
   tools/perf compare main .                  is this tree slower than main? Builds both, runs them in turns
   tools/perf compare v1 . --program my_bench  the same of a program that is not Tessera's
   tools/perf count --check                   does a counted case take more instructions?
+  tools/perf serial tessellate a.bpt -o a.ply  which of its stages run on one thread?
   tools/perf record --roofline               this build's figures, kept in build/perf/records
   tools/perf track ./my_bench                the figures of a program that is not Tessera's, kept in perf-records
   tools/perf check                           is the newest record slower than those before it?
@@ -102,6 +103,19 @@ def add_count(commands):
     parser.add_argument("--baselines", default=baselines.FOLDER, metavar="FOLDER",
                         help="default: bench/baselines")
     parser.set_defaults(run=count.command)
+
+
+def add_serial(commands):
+    parser = commands.add_parser(
+        "serial", help="which stages of the command line run on one thread",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Counts the instructions of 'tessera tessellate', stage by stage, and of them those that only one thread can do,\n"
+        "by valgrind with AVX2. They bound what more threads gain. Work of the system, as for files and pages, is not counted.",
+        epilog="Example: tools/perf serial tessellate tools/models/teapot.bpt -o /tmp/teapot.ply --tolerance 1e-4\n" + STATUS)
+    parser.add_argument("--program", metavar="FILE", help="a tessera (default: this tree's build of the preset)")
+    parser.add_argument("--preset", default="dev", help="whose build (default: dev, what tools/test.sh builds)")
+    parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="tessellate ...", help="the command")
+    parser.set_defaults(run=serial.command)
 
 
 def add_record(commands):
@@ -234,7 +248,7 @@ def make_parser():
     parser = argparse.ArgumentParser(prog="tools/perf", description=DESCRIPTION, epilog=STATUS,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for add in (add_compare, add_count, add_record, add_track, add_check, add_list, add_report, add_export,
+    for add in (add_compare, add_count, add_serial, add_record, add_track, add_check, add_list, add_report, add_export,
                 add_roofline, add_peers):
         add(commands)
     return parser

@@ -1,10 +1,12 @@
 #include "tess/cells/mesh_faces.h"
 
-#include <cstring>
+#include <new>
 #include <string>
+#include <utility>
 
 #include "base/text.h"
 #include "parallel/least_index.h"
+#include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -44,14 +46,18 @@ Status check_face_patches(const Mesh& mesh, std::size_t patches) {
   return status.ok() ? check("quad", mesh.quad_patches, mesh.quad_count()) : status;
 }
 
-std::size_t equal_values(std::span<const std::uint32_t> values, std::size_t first) {
-  // All of a block are equal if each equals the next; a comparison of memory looks at many at once.
-  constexpr std::size_t block = 64;
-  std::size_t at = first;
-  while (at + block < values.size() && std::memcmp(&values[at], &values[at + 1], block * sizeof(std::uint32_t)) == 0)
-    at += block;
-  while (at < values.size() && values[at] == values[first]) ++at;
-  return at - first;
+std::vector<std::size_t> run_ends(std::span<const std::uint32_t> values) {
+  constexpr std::size_t piece = std::size_t{1} << 16;
+  std::vector<std::vector<std::size_t>> found(values.size() / piece + 1);
+  const auto search = [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t>& ends = found[begin / piece];
+    for (std::size_t k = begin; k < end; ++k)
+      if (k + 1 == values.size() || values[k] != values[k + 1]) ends.push_back(k + 1);
+  };
+  if (!parallel_for(values.size(), piece, {}, search).ok()) throw std::bad_alloc();
+  std::vector<std::size_t> all = std::move(found[0]);
+  for (std::size_t k = 1; k < found.size(); ++k) all.insert(all.end(), found[k].begin(), found[k].end());
+  return all;
 }
 
 }}  // namespace tessera::abi_0_1

@@ -25,20 +25,23 @@ struct FaceRun {
   std::size_t first_triangle, first_quad;  ///< the number of the run's first face, and of the next of the other kind
   std::size_t count;
 };
-/// Returns how many values from `first` on equal that one, at least 1.
-std::size_t equal_values(std::span<const std::uint32_t> values, std::size_t first);
+/// Returns where runs of equal values end, found by all threads: places behind their last values. Throws std::bad_alloc.
+std::vector<std::size_t> run_ends(std::span<const std::uint32_t> values);
 
 /// Calls visit(run) for all faces in the order of the patches, the next triangles or quads with the lower one.
 /// check_face_patches() has checked the mesh. Ends at an error of a visit, which it returns.
 template <class Visit>
 Status for_faces_by_patch(const Mesh& mesh, Visit visit) {
+  const std::vector<std::size_t> triangle_ends = run_ends(mesh.patches), quad_ends = run_ends(mesh.quad_patches);
+  auto triangle_end = triangle_ends.begin(), quad_end = quad_ends.begin();
   for (std::size_t t = 0, q = 0; t < mesh.patches.size() || q < mesh.quad_patches.size();) {
     const bool is_quads =
         t == mesh.patches.size() || (q < mesh.quad_patches.size() && mesh.quad_patches[q] < mesh.patches[t]);
-    const std::size_t count = is_quads ? equal_values(mesh.quad_patches, q) : equal_values(mesh.patches, t);
-    const Status status = visit(FaceRun{is_quads ? mesh.quad_patches[q] : mesh.patches[t], is_quads, t, q, count});
+    const std::size_t end = is_quads ? *quad_end++ : *triangle_end++;
+    const Status status =
+        visit(FaceRun{is_quads ? mesh.quad_patches[q] : mesh.patches[t], is_quads, t, q, end - (is_quads ? q : t)});
     if (!status.ok()) return status;
-    (is_quads ? q : t) += count;
+    (is_quads ? q : t) = end;
   }
   return {};
 }
