@@ -238,7 +238,8 @@ class SetMesher {
 Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
                    Meshed& made) {
   const PackedSet& only = packed.sets[0];
-  const FilePlan file = plan_for_file(options, only.set->model_box(), path);
+  const Box3 box = only.set->model_box();
+  const FilePlan file = plan_for_file(options, box, path);
   SetMesher mesher(options, file, false, 1, made);
   SetMesh work;
   mesher.plan(only, file.options, work);
@@ -250,7 +251,7 @@ Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& 
   made.mesh = std::move(work.mesh);
   made.mesh.parts = *std::move(parts);
   made.open_edges = only.count * work.open_edges;
-  add_file(file, options, only.set->model_box(), made);
+  add_file(file, options, box, made);
   return {};
 }
 

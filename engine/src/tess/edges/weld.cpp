@@ -2,29 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <optional>
 #include <tuple>
 
 #include "base/union_find.h"
+#include "parallel/parallel_for.h"
+#include "tess/edges/numbered_borders.h"
 #include "tess/edges/short_sides.h"
 #include "tess/edges/side_curve.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-Side side_of(std::uint32_t border) { return all_sides[border % 4]; }
-std::size_t patch_of(std::uint32_t border) { return border / 4; }
-
-SideCurve curve_of(const PatchSet::Impl& set, std::uint32_t border) {
-  return {set.patches[patch_of(border)], side_of(border)};
-}
-
-/// Returns a corner's vertex as it is packed in float.
-std::array<float, 3> packed_corner(const PatchSet::Impl& set, std::uint32_t corner) {
-  const Vec3 p = corner_of(set.patches[patch_of(corner)], corner) - set.origin + Vec3{};
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
 
 /// An edge, and where its middle lies along `unaligned`.
 struct EdgePlace {
@@ -86,6 +76,15 @@ class Welder {
     return is_f64(border) == is_f64(other) ? comes_before(curve(border), curve(other)) : is_f64(border);
   }
 
+  /// Calls visit(k) for each k below `count`, on all threads.
+  template <class Visit>
+  static void for_all(std::size_t count, const Visit& visit) {
+    constexpr std::size_t piece = 256;
+    const Status status = parallel_for(count, piece, {}, [&](std::size_t begin, std::size_t end) {
+      for (; begin < end; ++begin) visit(begin);
+    });
+    if (!status.ok()) throw std::bad_alloc();
+  }
   /// Calls visit(border, edge) for borders of patches with an area.
   template <class Visit>
   void for_borders(Visit visit) const {
@@ -97,7 +96,7 @@ class Welder {
 
   /// The nearest edge to one with a single border.
   struct Nearest {
-    std::uint32_t edge, other = no_id;
+    std::uint32_t edge = no_id, other = no_id;
     bool reversed = false;
     double distance = 0;
   };
@@ -145,22 +144,29 @@ class Welder {
     return places;
   }
 
+  /// Finds the nearest edge to one at a place, if it has a single border.
+  Nearest nearest_to(std::span<const EdgePlace> places, std::size_t k) const {
+    const double reach = 1.001 * rules_.reach;  // compare() decides
+    Nearest nearest{places[k].edge};
+    if (has_more_[nearest.edge]) return nearest;
+    const auto look = [&](const EdgePlace& other) {
+      if (!(std::abs(other.along - places[k].along) <= reach)) return false;
+      if (max_abs(other.middle - places[k].middle) <= reach) compare(other.edge, nearest);
+      return true;
+    };
+    for (std::size_t n = k + 1; n < places.size() && look(places[n]); ++n) {
+    }
+    for (std::size_t n = k; n > 0 && look(places[n - 1]); --n) {
+    }
+    return nearest;
+  }
+
   /// Joins each edge with a single border to the nearest edge. Returns whether there are any.
   bool join_edges() {
     const std::vector<EdgePlace> places = this->places();
-    const double reach = 1.001 * rules_.reach;  // compare() decides
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      if (has_more_[places[k].edge]) continue;
-      Nearest nearest{places[k].edge};
-      const auto look = [&](const EdgePlace& other) {
-        if (!(std::abs(other.along - places[k].along) <= reach)) return false;
-        if (max_abs(other.middle - places[k].middle) <= reach) compare(other.edge, nearest);
-        return true;
-      };
-      for (std::size_t n = k + 1; n < places.size() && look(places[n]); ++n) {
-      }
-      for (std::size_t n = k; n > 0 && look(places[n - 1]); --n) {
-      }
+    std::vector<Nearest> found(places.size());
+    for_all(places.size(), [&](std::size_t k) { found[k] = nearest_to(places, k); });
+    for (const Nearest& nearest : found) {
       if (nearest.other == no_id) continue;
       if (!joined_) joined_.emplace(leading_.size());
       joined_->unite(nearest.edge, nearest.other, nearest.reversed);
@@ -201,13 +207,21 @@ class Welder {
   }
   /// Finds the edges that become points. Returns whether there are any.
   bool find_poles(std::span<const double> roundings) {
-    const double rounding = *std::max_element(roundings.begin(), roundings.end());
-    for (std::size_t block = 0; block < set_.lane_counts.size(); ++block) {
-      if (!(shortest_side(set_, block) <= rules_.reach + 2 * rounding)) continue;
+    const double most = rules_.reach + 2 * *std::max_element(roundings.begin(), roundings.end());
+    std::vector<std::vector<std::uint32_t>> points(set_.lane_counts.size());  // borders, by block
+    for_all(points.size(), [&](std::size_t block) {
+      if (!(shortest_side(set_, block) <= most)) return;
       const std::uint32_t* const patches = set_.lane_patches.data() + block * PatchSet::lanes;
       for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
-        for (std::uint32_t side = 0; side < 4; ++side) find_pole(4 * patches[lane] + side);
-    }
+        for (std::uint32_t border = 4 * patches[lane]; border < 4 * patches[lane] + 4; ++border)
+          if (edge_of_border(border) != no_id && !shapes_[patches[lane]].is_curve && is_point(border))
+            points[block].push_back(border);
+    });
+    for (const std::vector<std::uint32_t>& borders : points)
+      for (const std::uint32_t border : borders) {
+        is_pole_.resize(leading_.size(), 0);
+        is_pole_[canonical(edge_of_border(border))] = 1;
+      }
     if (!is_pole_.empty()) keep_patches();
     return !is_pole_.empty();
   }
@@ -248,12 +262,6 @@ class Welder {
         if (const std::uint32_t edge = edge_of_border(4 * patch + side); edge != no_id) kept.push_back(canonical(edge));
     }
     for (const std::uint32_t edge : kept) is_pole_[edge] = 0;
-  }
-  void find_pole(std::uint32_t border) {
-    const std::uint32_t edge = edge_of_border(border);
-    if (edge == no_id || shapes_[patch_of(border)].is_curve || !is_point(border)) return;
-    is_pole_.resize(leading_.size(), 0);
-    is_pole_[canonical(edge)] = 1;
   }
   void find_shapes() {
     weld_.shapes.assign(shapes_.begin(), shapes_.end());
@@ -344,17 +352,6 @@ class Welder {
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   const WeldRules& rules, SharedEdges& edges) {
   return Welder(set, shapes, rules, edges).run(roundings);
-}
-
-std::array<std::uint32_t, 2> ends_of(std::uint32_t border) {
-  constexpr std::uint32_t ends[4][2] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}};
-  const std::uint32_t patch = border - border % 4;
-  return {patch + ends[border % 4][0], patch + ends[border % 4][1]};
-}
-
-Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner) {
-  const bool end_u = corner % 4 == 1 || corner % 4 == 2, end_v = corner % 4 >= 2;
-  return patch.point(end_u ? patch.degree_u() : 0, end_v ? patch.degree_v() : 0);
 }
 
 void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies, std::span<const double> roundings,

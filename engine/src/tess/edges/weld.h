@@ -43,11 +43,6 @@ struct Weld : VertexCopies {
   std::vector<double> displacements;
 };
 
-/// Returns the corners at the ends of a border, in the direction of the parameter along it.
-std::array<std::uint32_t, 2> ends_of(std::uint32_t border);
-/// Returns a corner's control point.
-Vec3 corner_of(const BezierPatch& patch, std::uint32_t corner);
-
 /// The borders that are welded.
 ///
 /// Borders whose control points lie in a box no larger than `reach` become points, with all borders joined to them; if

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/union_find.h"
-#include "tess/edges/side_curve.h"
+#include "tess/edges/numbered_borders.h"
 #include "tess/plan/ring_vertices.h"
 
 namespace tessera { inline namespace abi_0_1 {
