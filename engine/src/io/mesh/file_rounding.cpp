@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
+#include "parallel/parallel_for.h"
 #include "tessera/io.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -41,13 +43,22 @@ double float_sum_rounding(const PositionRange& range) {
 }  // namespace
 
 PositionRange PositionRange::of(const Mesh& mesh) {
-  float x = 0, y = 0, z = 0;
-  for (std::size_t k = 0; k + 2 < mesh.positions.size(); k += 3) {
-    x = std::max(x, std::abs(mesh.positions[k]));
-    y = std::max(y, std::abs(mesh.positions[k + 1]));
-    z = std::max(z, std::abs(mesh.positions[k + 2]));
-  }
-  return {mesh.origin, {x, y, z}, !mesh.model_positions.empty()};
+  constexpr std::size_t piece = std::size_t{1} << 15;
+  std::mutex mutex;
+  Vec3 reach;
+  const auto extend = [&](std::size_t begin, std::size_t end) {
+    float x = 0, y = 0, z = 0;
+    for (std::size_t k = 3 * begin; k < 3 * end; k += 3) {
+      x = std::max(x, std::abs(mesh.positions[k]));
+      y = std::max(y, std::abs(mesh.positions[k + 1]));
+      z = std::max(z, std::abs(mesh.positions[k + 2]));
+    }
+    const std::lock_guard lock(mutex);
+    reach = {std::max(reach.x, double{x}), std::max(reach.y, double{y}), std::max(reach.z, double{z})};
+  };
+  const std::size_t count = mesh.positions.size() / 3;
+  if (!parallel_for(count, piece, {}, extend).ok()) extend(0, count);  // without memory for threads
+  return {mesh.origin, reach, !mesh.model_positions.empty()};
 }
 
 bool needs_double_sums(const PositionRange& range) {
