@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 #include "basis/bernstein.h"
 #include "surface/net/homogeneous.h"
+#include "tess/bounds/sweep_normal.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -100,6 +102,7 @@ double largest_term(const HomogeneousNet& net, bool rational) {
 }  // namespace
 
 NormalNet normal_net(const BezierPatch& patch) {
+  if (std::optional<NormalNet> sweep = sweep_normal_net(patch)) return *std::move(sweep);
   const HomogeneousNet homogeneous(patch, patch.point(0, 0));
   const Scaled<Vec3> numerator = normal_numerator(homogeneous, patch.is_rational());
   NormalNet out;

@@ -108,7 +108,8 @@ class Piece {
   Turning bound() const {
     if (!(least_ > 0)) return {infinity, infinity};
     const int m = net_.rows - 1, n = net_.columns - 1;
-    const double u = m * largest_difference(net_.columns, net_.count()), v = n * largest_difference(1, net_.columns);
+    const double u = std::max(m, 1) * largest_difference(net_.columns, net_.count()),
+                 v = std::max(n, 1) * largest_difference(1, net_.columns);
     return std::isnan(u + v) ? Turning{infinity, infinity} : Turning{u * scale_.u / least_, v * scale_.v / least_};
   }
   /// Returns the turning at the corners, a lower bound of the largest over the piece.
@@ -136,7 +137,7 @@ class Piece {
   double largest_difference(int step, int row) const {
     const double *const x = net_.at[0], *const y = net_.at[1], *const z = net_.at[2];
     const int count = net_.count() - step;
-    if (count <= 0) return 0;
+    if (count <= 0) return 4 * rounding_;
     double *const across = scratch_.first, *const along = scratch_.second, *const both = scratch_.third;
     for (int k = 0; k < count; ++k) {
       const double dx = x[k + step] - x[k], dy = y[k + step] - y[k], dz = z[k + step] - z[k];
