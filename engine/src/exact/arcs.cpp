@@ -20,11 +20,13 @@ Arcs::Point on_circle(double angle) {
 Arcs::Arcs(double from, double to) : from_(from), to_(to) {
   const double right_angles = (to - from) / (std::numbers::pi / 2);
   count_ = std::max(1, static_cast<int>(std::ceil(right_angles - rounding)));
+  half_ = (to_ - from_) / (2 * count_);
+  tangent_ = std::tan(0.5 * half_);
 }
 
 std::vector<Arcs::Point> Arcs::points() const {
   std::vector<Point> points{on_circle(from_)};
-  const double inner = std::cos(half());
+  const double inner = std::cos(half_);
   for (int k = 0; k < count_; ++k) {
     const Point corner = on_circle(0.5 * (knot(k) + knot(k + 1)));  // where the tangents meet
     points.push_back({corner.cosine / inner, corner.sine / inner, inner});
@@ -42,25 +44,25 @@ std::vector<double> Arcs::knots() const {
 }
 
 double Arcs::middle(double value) const {
-  const double place = std::floor((value - from_) / (2 * half()));
+  const double place = std::floor((value - from_) / (2 * half_));
   const bool within = value >= from_ && value <= to_;
   const double k = within ? std::clamp(place, 0.0, count_ - 1.0) : place;
   return 0.5 * (knot(k) + knot(k + 1));
 }
 
 double Arcs::parameter(double angle) const {
-  const double m = middle(angle), h = half();
-  return m + h * std::tan(0.5 * (angle - m)) / std::tan(0.5 * h);
+  const double m = middle(angle);
+  return m + half_ * std::tan(0.5 * (angle - m)) / tangent_;
 }
 
 double Arcs::angle(double parameter) const {
-  const double m = middle(parameter), h = half();
-  return m + 2 * std::atan(std::tan(0.5 * h) * (parameter - m) / h);
+  const double m = middle(parameter);
+  return m + 2 * std::atan(tangent_ * (parameter - m) / half_);
 }
 
-double Arcs::slope(double angle) const {
-  const double h = half(), c = std::cos(0.5 * (angle - middle(angle)));
-  return 0.5 * h / (c * c * std::tan(0.5 * h));
+double Arcs::slope(double parameter) const {
+  const double tangent = tangent_ * (parameter - middle(parameter)) / half_;
+  return 0.5 * half_ / tangent_ * (1 + tangent * tangent);
 }
 
 }}  // namespace tessera::abi_0_1

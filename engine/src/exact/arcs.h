@@ -31,15 +31,16 @@ class Arcs {
   /// angle a full turn away has a parameter a full turn away.
   double parameter(double angle) const;
   double angle(double parameter) const;
-  /// d parameter / d angle; continuous, because the arcs are equal.
-  double slope(double angle) const;
+  /// d parameter / d angle at a parameter; continuous, because the arcs are equal.
+  double slope(double parameter) const;
 
  private:
-  double half() const { return (to_ - from_) / (2 * count_); }
   double middle(double value) const;
   double knot(double k) const { return k == count_ ? to_ : from_ + (to_ - from_) * k / count_; }
   double from_, to_;
   int count_;
+  double half_;     ///< of the angle of each arc
+  double tangent_;  ///< of a quarter of that angle
 };
 
 }}  // namespace tessera::abi_0_1

@@ -14,9 +14,17 @@ class Fractions {
 
   /// Empty if the function is not monotone.
   std::optional<Curve> curve() {
-    add_point(f_.range.from);
-    for (const double end : f_.breaks) append(knots_.back(), end, 0);
-    append(knots_.back(), f_.range.to, 0);
+    const auto place = [&](double s) { return Place{s, f_.at(s)}; };
+    Place before = place(f_.range.from);
+    add_point(before);
+    const auto append_to = [&](double s) {
+      if (!(before.s < s) || !monotone_) return;
+      const Place middle = place(0.5 * (before.s + s)), end = place(s);
+      append(before, middle, end, 0);
+      before = end;
+    };
+    for (const double end : f_.breaks) append_to(end);
+    append_to(f_.range.to);
     if (!monotone_) return {};
     std::vector<double> knots{knots_.front()};
     knots.insert(knots.end(), knots_.begin(), knots_.end());
@@ -26,30 +34,37 @@ class Fractions {
   }
 
  private:
-  void add_point(double s, double ratio = 1) {
-    points_.push_back({f_.at(s), 0, 0});
+  /// A parameter, and the value of the function there.
+  struct Place {
+    double s, value;
+  };
+
+  void add_point(const Place& at, double ratio = 1) {
+    points_.push_back({at.value, 0, 0});
     weights_.push_back(weights_.empty() ? 1 : ratio * weights_.back());
-    knots_.push_back(s);
+    knots_.push_back(at.s);
   }
 
   /// Appends one fraction, which interpolates both ends and the middle; halves the interval until points between fit.
-  void append(double from, double to, int depth) {
-    if (!(from < to)) return;
-    const double a = f_.at(from), b = f_.at(to), middle = f_.at(0.5 * (from + to));
-    const double ratio = (middle - a) / (b - middle);
+  void append(const Place& a, const Place& middle, const Place& b, int depth) {
+    const double ratio = (middle.value - a.value) / (b.value - middle.value);
     if (!(ratio > 1e-6 && ratio < 1e6)) {
       monotone_ = false;
       return;
     }
-    bool fits = true;
-    for (const double x : {0.25, 0.75}) {
-      const double fraction = ((1 - x) * a + x * ratio * b) / (1 - x + x * ratio);
-      fits = fits && std::abs(fraction - f_.at((1 - x) * from + x * to)) <= tolerance_ * std::abs(b - a);
-    }
+    const auto between = [&](const Place& low, const Place& high) {
+      const double s = 0.5 * (low.s + high.s);
+      return Place{s, f_.at(s)};
+    };
+    const auto fits = [&](double x, const Place& at) {
+      const double fraction = ((1 - x) * a.value + x * ratio * b.value) / (1 - x + x * ratio);
+      return std::abs(fraction - at.value) <= tolerance_ * std::abs(b.value - a.value);
+    };
+    const Place low = between(a, middle), high = between(middle, b);
     constexpr int deepest = 6;
-    if (fits || depth == deepest) return add_point(to, ratio);
-    append(from, 0.5 * (from + to), depth + 1);
-    append(0.5 * (from + to), to, depth + 1);
+    if (depth == deepest || (fits(0.25, low) && fits(0.75, high))) return add_point(b, ratio);
+    append(a, low, middle, depth + 1);
+    append(middle, high, b, depth + 1);
   }
 
   const MonotoneFunction& f_;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "occt/relative_place.h"
 #include "tessera/topology.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -117,7 +118,7 @@ class PolygonMaker {
     double from = 0, to = 0;
     const handle<Geom_Curve> curve = BRep_Tool::Curve(edge.edge, place, from, to);
     if (curve.IsNull()) return 0;
-    const TopLoc_Location between = sources_.faces[face].face.Location().Predivided(place);
+    const TopLoc_Location between = relative_place(sources_.faces[face].face.Location(), place);
     const bool moves = !between.IsIdentity();
     const gp_Trsf move = between.Transformation();
     double most = 0;

@@ -24,6 +24,7 @@
 #include <cmath>
 #include <utility>
 
+#include "occt/relative_place.h"
 #include "occt/trim_curve.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -70,7 +71,7 @@ bool take_stored_order(std::vector<TopoDS_Edge>& edges, const std::vector<EdgeEn
 
 /// Whether the edge states a curve in the parameters of the surface at its place.
 bool has_curve(const TopoDS_Edge& edge, const handle<Geom_Surface>& surface, const TopLoc_Location& place) {
-  const TopLoc_Location location = place.Predivided(edge.Location());
+  const TopLoc_Location location = relative_place(place, edge.Location());
   const auto* const shape = static_cast<const BRep_TEdge*>(edge.TShape().get());
   for (BRep_ListIteratorOfListOfCurveRepresentation curve(shape->Curves()); curve.More(); curve.Next())
     if (curve.Value()->IsCurveOnSurface(surface, location)) return true;
@@ -84,7 +85,7 @@ handle<Geom2d_Curve> line_on_plane(const TopoDS_Edge& edge, const Geom_Plane& pl
   double from = 0, to = 0;
   TopLoc_Location location;
   const auto line = handle<Geom_Line>::DownCast(BRep_Tool::Curve(edge, location, from, to));
-  if (line.IsNull() || !location.Predivided(place).IsIdentity()) return {};
+  if (line.IsNull() || !relative_place(location, place).IsIdentity()) return {};
   const gp_Ax3& axes = plane.Position();
   const gp_Vec normal = axes.Direction();
   gp_Vec along = line->Position().Direction();

@@ -80,8 +80,8 @@ class SurfaceSides {
 
 /// How far the curves of loops may lie from those of the file.
 struct LoopTolerances {
-  double curve = 0;  ///< in our parameters of the surface
-  double along = 0;  ///< of an edge's parameter along it, as a length; 0: as far as rounding allows
+  ParameterPoint curve;  ///< in our parameters of the surface
+  double along = 0;      ///< of an edge's parameter along it, as a length; 0: as far as rounding allows
 };
 
 Status append_edge(const BorderEdge& border, const SurfaceSides& sides, const Reparametrization& parameters,
@@ -98,19 +98,21 @@ Status append_edge(const BorderEdge& border, const SurfaceSides& sides, const Re
 
 /// How far a fitted curve may lie from its own, in our parameters: along arcs, these grow at 0.94 to 1.12 times the
 /// rate of OpenCASCADE's.
-double fit_tolerance(const FaceBorder& border, const FaceBox& box, const Reparametrization& parameters) {
+ParameterPoint fit_tolerance(const FaceBorder& border, const FaceBox& box, const Reparametrization& parameters) {
   const Domain& d = box.domain;
   const double least = 1e-9 * std::min(d.u1 - d.u0, d.v1 - d.v0);
-  if (border.fit_tolerance == 0 || parameters.is_identity()) return least;
+  if (border.fit_tolerance == 0 || parameters.is_identity()) return {least, least};
   TopLoc_Location location;
   const GeomAdaptor_Surface adaptor(bare_surface(BRep_Tool::Surface(border.face, location)), d.u0, d.u1, d.v0, d.v1);
   // OpenCASCADE's resolutions of surfaces of revolution, say, do not depend on the radius.
   const bool has_resolution = adaptor.GetType() <= GeomAbs_BSplineSurface;
-  if (!has_resolution) return least;
-  constexpr double slope = 0.94;
-  const double wide =
-      slope * std::min(adaptor.UResolution(border.fit_tolerance), adaptor.VResolution(border.fit_tolerance));
-  return std::clamp(wide, least, 1e-3 * std::min(d.u1 - d.u0, d.v1 - d.v0));
+  if (!has_resolution) return {least, least};
+  constexpr double slope = 0.94, most = 1e-3;  // most: a share of the range
+  const auto within = [&](double resolution, double range) {
+    return std::clamp(slope * resolution, least, std::max(least, most * range));
+  };
+  return {within(adaptor.UResolution(border.fit_tolerance), d.u1 - d.u0),
+          within(adaptor.VResolution(border.fit_tolerance), d.v1 - d.v0)};
 }
 
 }  // namespace

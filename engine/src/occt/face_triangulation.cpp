@@ -6,12 +6,34 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
+#include <utility>
+
+#include "exact/arcs.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using opencascade::handle;
+
+/// Turns our parameters along one direction of a face into OpenCASCADE's. Vertices of a grid often have equal ones.
+class TheirParameter {
+ public:
+  explicit TheirParameter(const OcctParameter& of) {
+    if (of.arcs) arcs_.emplace(of.arcs->from, of.arcs->to);
+  }
+  double operator()(double ours) {
+    if (!arcs_) return ours;
+    if (ours != last_) last_ = ours, angle_ = arcs_->angle(ours);
+    return angle_;
+  }
+
+ private:
+  std::optional<Arcs> arcs_;
+  double last_ = std::numeric_limits<double>::quiet_NaN(), angle_ = 0;
+};
 
 }  // namespace
 
@@ -54,6 +76,8 @@ class FaceTriangulations::Maker {
         mesh_(all.mesh_),
         face_(face),
         source_(all.sources_.faces[face]),
+        along_u_(source_.along_u),
+        along_v_(source_.along_v),
         domain_(std::get<BSplineSurface>(all.shape_.faces[face].surface).domain()) {}
 
   handle<Poly_Triangulation> run() {
@@ -122,10 +146,10 @@ class FaceTriangulations::Maker {
     return {of.u_at(double(mesh_.parameters[2 * std::size_t{vertex}])),
             of.v_at(double(mesh_.parameters[2 * std::size_t{vertex} + 1]))};
   }
-  gp_Pnt2d their_parameters(const ParameterPoint& ours) const {
-    const std::array<double, 2> at =
-        source_.to_occt(std::clamp(ours.u, domain_.u0, domain_.u1), std::clamp(ours.v, domain_.v0, domain_.v1));
-    return {at[0], at[1]};
+  gp_Pnt2d their_parameters(const ParameterPoint& ours) {
+    double u = std::clamp(ours.u, domain_.u0, domain_.u1), v = std::clamp(ours.v, domain_.v0, domain_.v1);
+    if (source_.is_turned) std::swap(u, v);  // see OcctFace
+    return {along_u_(u), along_v_(v)};
   }
   /// Calls with(p) for the coordinates of a vertex as the mesh has them: in double, or in float relative to its origin.
   template <class With>
@@ -255,6 +279,7 @@ class FaceTriangulations::Maker {
   const Mesh& mesh_;
   std::size_t face_;
   const OcctFace& source_;
+  TheirParameter along_u_, along_v_;
   Domain domain_;
   std::vector<std::uint32_t> poles_;  ///< a vertex at each
   std::vector<Corners> triangles_;

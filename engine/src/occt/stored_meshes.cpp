@@ -12,6 +12,8 @@
 #include <unordered_set>
 #include <vector>
 
+#include "occt/relative_place.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
@@ -92,7 +94,7 @@ class Storing {
 
   void add(const EdgePolygon& polygon) {
     const TopoDS_Edge& edge = edges_[polygon.edge].edge;
-    const TopLoc_Location place = faces_[polygon.face].face.Location().Predivided(edge.Location());
+    const TopLoc_Location place = relative_place(faces_[polygon.face].face.Location(), edge.Location());
     const handle<Poly_Triangulation>& on = made_[polygon.face];
     handle<BRep_CurveRepresentation> curve;
     if (polygon.second.IsNull())

@@ -18,6 +18,7 @@
 
 #include "base/text.h"
 #include "convert/fit/cubic_fit.h"
+#include "exact/spline_jets.h"
 #include "occt/guarded_calls.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -49,34 +50,60 @@ bool is_straight_along_a_parameter(const Geom2d_BSplineCurve& spline) {
   return spline.Degree() == 1 && spline.NbPoles() == 2 && is_straight_along_a_parameter(spline.Pole(1), spline.Pole(2));
 }
 
-/// One knot interval of the spline, in our parameters.
-class MappedSpan {
+/// A spline in our parameters.
+class MappedSpline {
  public:
-  MappedSpan(const Geom2d_BSplineCurve& spline, int span, const Reparametrization& parameters)
-      : spline_(spline), span_(span), parameters_(parameters) {}
+  /// `same`: the spline, as one of ours in its own parameters.
+  MappedSpline(const Geom2d_BSplineCurve& spline, const Curve& same, const Reparametrization& parameters)
+      : spline_(spline), same_(same), parameters_(parameters) {}
 
   CurveSample at(double t) const {
+    const CurvePlace place = same_(t);
+    return mapped(t, place.point, place.slope);
+  }
+  /// The end of the knot interval `span`, where the spline may have another slope after it.
+  CurveSample end_of(int span) const {
     gp_Pnt2d p;
     gp_Vec2d d;
-    spline_.LocalD1(t, span_, span_ + 1, p, d);
-    const std::array<double, 2> uv = parameters_(p.X(), p.Y());
-    const double slope_u = parameters_.u ? parameters_.u->slope(p.X()) : 1,
-                 slope_v = parameters_.v ? parameters_.v->slope(p.Y()) : 1;
-    return {t, {uv[0], uv[1], 0}, {slope_u * d.X(), slope_v * d.Y(), 0}};
+    const double t = spline_.Knot(span + 1);
+    spline_.LocalD1(t, span, span + 1, p, d);
+    return mapped(t, {p.X(), p.Y(), 0}, {d.X(), d.Y(), 0});
   }
 
  private:
+  CurveSample mapped(double t, const Vec3& point, const Vec3& slope) const {
+    const std::array<double, 2> uv = parameters_(point.x, point.y);
+    const double slope_u = parameters_.u ? parameters_.u->slope(uv[0]) : 1,
+                 slope_v = parameters_.v ? parameters_.v->slope(uv[1]) : 1;
+    return {t, {uv[0], uv[1], 0}, {slope_u * slope.x, slope_v * slope.y, 0}};
+  }
+
   const Geom2d_BSplineCurve& spline_;
-  int span_;
+  FastCurve same_;
   const Reparametrization& parameters_;
 };
 
-Result<Curve> refitted(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters, double tolerance) {
+/// Cubics that end where the spline may have a corner.
+Result<Curve> refitted(const Geom2d_BSplineCurve& spline, const Reparametrization& parameters,
+                       const ParameterPoint& tolerance) {
+  const Result<Curve> same = mapped_poles(spline, {});
+  if (!same) return same.status();
+  const MappedSpline mapped(spline, *same, parameters);
+  const auto at = [&](double t) { return mapped.at(t); };
+  const auto is_near = [&](const Vec3& a, const Vec3& b) {
+    return std::abs(a.x - b.x) <= tolerance.u && std::abs(a.y - b.y) <= tolerance.v;
+  };
   CubicFit fit;
-  const auto is_near = [&](const Vec3& a, const Vec3& b) { return length(a - b) <= tolerance; };
-  for (int k = spline.FirstUKnotIndex(); k < spline.LastUKnotIndex(); ++k) {
-    const MappedSpan span(spline, k, parameters);
-    fit.follow([&](double t) { return span.at(t); }, is_near, spline.Knot(k), spline.Knot(k + 1));
+  std::vector<CurveSample> samples;
+  const int last = spline.LastUKnotIndex();
+  for (int k = spline.FirstUKnotIndex(); k < last; ++k) {
+    const double from = spline.Knot(k), to = spline.Knot(k + 1);
+    samples.push_back(at(from));
+    samples.push_back(at(0.5 * (from + to)));
+    if (k + 1 < last && spline.Multiplicity(k + 1) < spline.Degree()) continue;
+    samples.push_back(mapped.end_of(k));
+    fit.follow(at, is_near, samples);
+    samples.clear();
   }
   return std::move(fit).curve();
 }
@@ -216,7 +243,7 @@ handle<Geom2d_Curve> bare_curve(handle<Geom2d_Curve> curve) {
 }
 
 Result<TrimCurve> trim_curve(const handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
-                             const Reparametrization& parameters, double tolerance) {
+                             const Reparametrization& parameters, const ParameterPoint& tolerance) {
   const handle<Geom2d_Curve> bare = bare_curve(curve);
   const Status too_long(StatusCode::unsupported, "an edge runs around more than once");
   if (bare->IsPeriodic() && range.to - range.from > (1 + 1e-9) * bare->Period()) return too_long;

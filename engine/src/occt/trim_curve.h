@@ -24,9 +24,9 @@ opencascade::handle<Geom2d_Curve> bare_curve(opencascade::handle<Geom2d_Curve> c
 
 /// The part of `curve` over `range` in our parameters; reverses its direction if `reversed`. Uses the curve's own
 /// spline if the parameters are equal, or if the curve is straight along one of them; otherwise cubics within
-/// `tolerance`. Circles and ellipses become rational arcs over their angles. Errors: those of Curve. May throw
-/// Standard_Failure.
+/// `tolerance` along each parameter. Circles and ellipses become rational arcs over their angles. Errors: those of
+/// Curve. May throw Standard_Failure.
 Result<TrimCurve> trim_curve(const opencascade::handle<Geom2d_Curve>& curve, const Interval& range, bool reversed,
-                             const Reparametrization& parameters, double tolerance);
+                             const Reparametrization& parameters, const ParameterPoint& tolerance);
 
 }}  // namespace tessera::abi_0_1

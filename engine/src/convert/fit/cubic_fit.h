@@ -2,6 +2,8 @@
 // Smooth curves followed by cubics.
 
 #include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "tessera/curve.h"
@@ -28,11 +30,27 @@ class CubicFit {
   template <class At, class IsNear>
   void follow(const At& at, const IsNear& is_near, double from, double to) {
     const CurveSample a = at(from), b = at(to);
-    if (points_.empty()) {
-      points_ = {a.point};
-      knots_.assign(4, from);
+    begin(a);
+    append(at, is_near, with_quarters(at, a, at(0.5 * (from + to)), b), 0);
+  }
+  /// Follows a curve over intervals one after the other, where the cubics before them end. Its slope is continuous
+  /// where they meet, so a cubic goes over several of them if the points at all their ends and middles are near.
+  ///
+  /// - `samples`: of the ends and middles of all intervals, 2 for each interval and one more.
+  template <class At, class IsNear>
+  void follow(const At& at, const IsNear& is_near, std::span<const CurveSample> samples) {
+    begin(samples.front());
+    const std::size_t count = samples.size() / 2;
+    if (count == 1) return append(at, is_near, with_quarters(at, samples[0], samples[1], samples[2]), 0);
+    const Cubic cubic(samples.front(), samples.back());
+    bool fits = true;
+    for (std::size_t k = 0; k < samples.size() && fits; ++k) {  // from the middle, where cubics are often farthest
+      const std::size_t other = k % 2 ? count + (k + 1) / 2 : count - k / 2;
+      if (other < samples.size()) fits = is_near(cubic.at(samples[other].t), samples[other].point);
     }
-    append(at, is_near, a, b, 0);
+    if (fits) return put(cubic);
+    follow(at, is_near, samples.first(2 * (count / 2) + 1));
+    follow(at, is_near, samples.subspan(2 * (count / 2)));
   }
 
   /// Returns the cubics as a spline. Errors: non_finite (samples).
@@ -44,24 +62,44 @@ class CubicFit {
  private:
   static constexpr int max_depth = 12;
 
-  template <class At, class IsNear>
-  void append(const At& at, const IsNear& is_near, const CurveSample& a, const CurveSample& b, int depth) {
-    const double third = (b.t - a.t) / 3;
-    const std::array<Vec3, 4> c{a.point, a.point + third * a.slope, b.point - third * b.slope, b.point};
-    const auto cubic = [&](double x) {
-      const double y = 1 - x;
-      return y * y * y * c[0] + 3 * x * y * y * c[1] + 3 * x * x * y * c[2] + x * x * x * c[3];
-    };
-    const CurveSample middle = at(0.5 * (a.t + b.t));
-    bool fits = is_near(cubic(0.5), middle.point);
-    for (const double x : {0.25, 0.75}) fits = fits && is_near(cubic(x), at(a.t + x * (b.t - a.t)).point);
-    if (fits || depth == max_depth) {
-      points_.insert(points_.end(), c.begin() + 1, c.end());
-      knots_.insert(knots_.end(), 3, b.t);
-      return;
+  /// The cubic with given points and slopes at its ends.
+  struct Cubic {
+    double from, to;
+    std::array<Vec3, 4> points;
+
+    Cubic(const CurveSample& a, const CurveSample& b) : from(a.t), to(b.t) {
+      const double third = (b.t - a.t) / 3;
+      points = {a.point, a.point + third * a.slope, b.point - third * b.slope, b.point};
     }
-    append(at, is_near, a, middle, depth + 1);
-    append(at, is_near, middle, b, depth + 1);
+    Vec3 at(double t) const {
+      const double x = from < to ? (t - from) / (to - from) : 0, y = 1 - x;
+      return y * y * y * points[0] + 3 * x * y * y * points[1] + 3 * x * x * y * points[2] + x * x * x * points[3];
+    }
+  };
+
+  template <class At>
+  static std::array<CurveSample, 5> with_quarters(const At& at, const CurveSample& a, const CurveSample& middle,
+                                                  const CurveSample& b) {
+    return {a, at(0.5 * (a.t + middle.t)), middle, at(0.5 * (middle.t + b.t)), b};
+  }
+  void begin(const CurveSample& start) {
+    if (!points_.empty()) return;
+    points_ = {start.point};
+    knots_.assign(4, start.t);
+  }
+  void put(const Cubic& cubic) {
+    points_.insert(points_.end(), cubic.points.begin() + 1, cubic.points.end());
+    knots_.insert(knots_.end(), 3, cubic.to);
+  }
+  /// `samples`: at the ends and the quarters of an interval.
+  template <class At, class IsNear>
+  void append(const At& at, const IsNear& is_near, const std::array<CurveSample, 5>& samples, int depth) {
+    const auto& [a, low, middle, high, b] = samples;
+    const Cubic cubic(a, b);
+    const auto fits = [&](const CurveSample& of) { return is_near(cubic.at(of.t), of.point); };
+    if (depth == max_depth || (fits(middle) && fits(low) && fits(high))) return put(cubic);
+    append(at, is_near, with_quarters(at, a, low, middle), depth + 1);
+    append(at, is_near, with_quarters(at, middle, high, b), depth + 1);
   }
 
   std::vector<Vec3> points_;
