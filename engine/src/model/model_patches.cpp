@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/impl_access.h"
+#include "parallel/parallel_for.h"
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -21,6 +22,11 @@ double key_of(const std::vector<TrimLoop>& loops) {
   return key;
 }
 
+/// Whether a surface is worth another thread's time, and calls no function of the caller's, which may not expect one.
+bool takes_a_while(const Surface& surface) {
+  return std::holds_alternative<BSplineSurface>(surface) || std::holds_alternative<QuadricPiece>(surface);
+}
+
 }  // namespace
 
 bool FaceTrimsFinder::Known::is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid,
@@ -34,19 +40,58 @@ bool FaceTrimsFinder::Known::is_for(const std::vector<TrimLoop>& others, const P
          });
 }
 
-Result<FaceTrims*> FaceTrimsFinder::find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid,
-                                         bool is_loose) {
+TrimOptions FaceTrimsFinder::options_of(const PatchGrid& grid, bool is_loose) {
   TrimOptions options = TrimRegion::Impl::options_of(grid);
   if (is_loose) options.snap = outline_snap;
-  const auto [first, last] = known_.equal_range(key_of(loops));
-  for (auto known = first; known != last; ++known)
-    if (known->second.is_for(loops, grid, options)) return &known->second.trims;
-  Result<TrimRegion> region = TrimRegion::Impl::make(*loops, grid.breaks_u(), grid.breaks_v(), options,
-                                                     TrimRegion::Impl::Use::patches, &extractions_);
+  return options;
+}
+
+Result<FaceTrims> FaceTrimsFinder::make(const std::vector<TrimLoop>& loops, const PatchGrid& grid,
+                                        const TrimOptions& options, CurveExtractions& extractions) {
+  Result<TrimRegion> region = TrimRegion::Impl::make(loops, grid.breaks_u(), grid.breaks_v(), options,
+                                                     TrimRegion::Impl::Use::patches, &extractions);
   if (!region) return region.status();
   FaceTrims trims{*std::move(region), {}};
   if (!trims.region.is_whole()) trims.uses = patch_uses(trims.region);
-  return &known_.emplace(key_of(loops), Known{loops, options, std::move(trims)})->second.trims;
+  return trims;
+}
+
+Status FaceTrimsFinder::find_ahead(std::span<const SurfaceLoops> faces) {
+  constexpr std::size_t faces_per_task = 4;
+  // One face of each key: faces of one key are nearly always equal.
+  std::vector<std::pair<double, const SurfaceLoops*>> due;
+  for (const SurfaceLoops& face : faces)
+    if (face.grid && *face.grid && face.loops && *face.loops)
+      if (const double key = key_of(**face.loops); !known_.contains(key)) due.emplace_back(key, &face);
+  std::ranges::stable_sort(due, {}, [](const auto& of) { return of.first; });
+  due.erase(std::ranges::unique(due, {}, [](const auto& of) { return of.first; }).begin(), due.end());
+  std::vector<std::optional<Result<FaceTrims>>> made(due.size());
+  const auto make_some = [&](std::size_t begin, std::size_t end) {
+    const auto extractions = extractions_.take();
+    for (std::size_t k = begin; k < end; ++k) {
+      const SurfaceLoops& face = *due[k].second;
+      made[k].emplace(make(**face.loops, **face.grid, options_of(**face.grid, face.is_loose), *extractions));
+    }
+  };
+  if (Status status = parallel_for(due.size(), faces_per_task, {}, make_some); !status.ok()) return status;
+  for (std::size_t k = 0; k < due.size(); ++k) {
+    const SurfaceLoops& face = *due[k].second;
+    if (*made[k])
+      known_.emplace(due[k].first, Known{**face.loops, options_of(**face.grid, face.is_loose), **std::move(made[k])});
+  }
+  return {};
+}
+
+Result<FaceTrims*> FaceTrimsFinder::find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid,
+                                         bool is_loose) {
+  const TrimOptions options = options_of(grid, is_loose);
+  const auto [first, last] = known_.equal_range(key_of(loops));
+  for (auto known = first; known != last; ++known)
+    if (known->second.is_for(loops, grid, options)) return &known->second.trims;
+  const auto extractions = extractions_.take();
+  Result<FaceTrims> trims = make(loops, grid, options, *extractions);
+  if (!trims) return trims.status();
+  return &known_.emplace(key_of(loops), Known{loops, options, *std::move(trims)})->second.trims;
 }
 
 void GatheredPatches::add(std::size_t surface, PatchGrid grid) {
@@ -130,20 +175,33 @@ void ModelPatches::name_edges() {
     name_edges(model_.shapes[instance.shape], instance.placement, instance.first_surface);
 }
 
+void ModelPatches::find_loops(std::size_t surface, SurfaceLoops& of) const {
+  const NamedFace named = named_face(surface);
+  const bool is_trimmed = !model_.surfaces[surface].trims->empty();
+  const bool has_outline = named.face && !named.face->outline->empty();
+  if (!options_.trims || !(is_trimmed || has_outline)) return;
+  ModelSurface cut = model_.surfaces[surface];
+  if (!is_trimmed) cut.trims = named.face->outline;
+  of.loops = grid_trims(cut);
+  // The outline of a quadric has the pace of its edges, which snapping to lines between patches would change.
+  of.is_loose = !is_trimmed && !std::holds_alternative<QuadricPiece>(cut.surface);
+}
+
 Status ModelPatches::add(PatchGrid grid) {
+  SurfaceLoops of{.grid = std::move(grid)};
+  find_loops(ends_.size(), of);
+  return add(std::move(of));
+}
+
+Status ModelPatches::add(SurfaceLoops of) {
   const std::size_t k = ends_.size(), first = all_.patches.size();
   const NamedFace named = named_face(k);
-  const bool is_trimmed = !model_.surfaces[k].trims->empty();
-  const bool has_outline = named.face && !named.face->outline->empty();
-  if (!options_.trims || !(is_trimmed || has_outline)) {
+  PatchGrid& grid = **of.grid;
+  if (!of.loops) {
     all_.add(k, std::move(grid));
   } else {
-    ModelSurface surface = model_.surfaces[k];
-    if (!is_trimmed) surface.trims = named.face->outline;
-    const Result<Shared<std::vector<TrimLoop>>> loops = grid_trims(surface);
-    // The outline of a quadric has the pace of its edges, which snapping to lines between patches would change.
-    const bool is_loose = !is_trimmed && !std::holds_alternative<QuadricPiece>(surface.surface);
-    const Result<FaceTrims*> trims = loops ? trims_.find(*loops, grid, is_loose) : loops.status();
+    const Result<Shared<std::vector<TrimLoop>>>& loops = *of.loops;
+    const Result<FaceTrims*> trims = loops ? trims_.find(*loops, grid, of.is_loose) : loops.status();
     if (!trims && trims.status().code() == StatusCode::out_of_memory) return trims.status();
     if (!trims) faults_.push_back(in_surface(model_, k, trims.status()));
     const std::size_t places = grid.patches().size();
@@ -168,10 +226,28 @@ bool ModelPatches::pass_whole_patch() {
 }
 
 Status ModelPatches::add_all(const FitOptions& fit) {
-  for (std::size_t k = 0; k < model_.surfaces.size(); ++k) {
-    Result<PatchGrid> grid = to_bezier(model_.surfaces[k], fit);
-    if (!grid) return in_surface(model_, k, grid.status());
-    if (Status status = add(*std::move(grid)); !status.ok()) return status;
+  // Batches, so that the grids of a large model are not all in memory beside the patches.
+  constexpr std::size_t batch = 256, surfaces_per_task = 4;
+  std::vector<SurfaceLoops> some;
+  for (std::size_t first = 0; first < model_.surfaces.size(); first += batch) {
+    some.clear();
+    some.resize(std::min(batch, model_.surfaces.size() - first));
+    const auto convert = [&](std::size_t k) {
+      some[k].grid = to_bezier(model_.surfaces[first + k], fit);
+      find_loops(first + k, some[k]);
+    };
+    const auto convert_some = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        if (takes_a_while(model_.surfaces[first + k].surface)) convert(k);
+    };
+    if (Status status = parallel_for(some.size(), surfaces_per_task, {}, convert_some); !status.ok()) return status;
+    for (std::size_t k = 0; k < some.size(); ++k)
+      if (!some[k].grid) convert(k);
+    if (Status status = trims_.find_ahead(some); !status.ok()) return status;
+    for (SurfaceLoops& of : some) {
+      if (!*of.grid) return in_surface(model_, ends_.size(), of.grid->status());
+      if (Status status = add(std::move(of)); !status.ok()) return status;
+    }
   }
   return {};
 }

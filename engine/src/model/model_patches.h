@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "block/patch_edges.h"
 #include "block/patch_set_impl.h"
 #include "block/patch_trims.h"
+#include "parallel/workspaces.h"
 #include "tessera/model.h"
 #include "trim/trim_region_impl.h"
 
@@ -21,9 +23,19 @@ struct FaceTrims {
   std::optional<std::uint32_t> index = {};  ///< into PatchTrims::regions
 };
 
+/// A surface's patches, and the loops that cut them.
+struct SurfaceLoops {
+  std::optional<Result<PatchGrid>> grid = {};
+  std::optional<Result<Shared<std::vector<TrimLoop>>>> loops = {};  ///< none if nothing cuts the patches
+  bool is_loose = false;  ///< the loops are an outline, which may be off the sides of the domain
+};
+
 /// Finds the trims of faces. Faces of equal loops over equal grids share them, as instances of a part do.
 class FaceTrimsFinder {
  public:
+  /// Finds the trims of faces by all threads, so that find() has them. Those that have none are left to find().
+  /// Errors: out_of_memory.
+  Status find_ahead(std::span<const SurfaceLoops> faces);
   /// Returns the trims of the next face, to stay until the next call.
   Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid, bool is_loose);
 
@@ -36,8 +48,12 @@ class FaceTrimsFinder {
     bool is_for(const std::vector<TrimLoop>& others, const PatchGrid& grid, const TrimOptions& other) const;
   };
 
+  static TrimOptions options_of(const PatchGrid& grid, bool is_loose);
+  static Result<FaceTrims> make(const std::vector<TrimLoop>& loops, const PatchGrid& grid, const TrimOptions& options,
+                                CurveExtractions& extractions);
+
   std::unordered_multimap<double, Known> known_;
-  CurveExtractions extractions_;
+  Workspaces<CurveExtractions> extractions_;
 };
 
 /// The patches of one surface after the other, and the source of each patch.
@@ -85,6 +101,10 @@ class ModelPatches {
     std::uint32_t first_edge = 0;
   };
 
+  /// Finds the loops of a surface whose grid is known.
+  void find_loops(std::size_t surface, SurfaceLoops& of) const;
+  /// Adds the next surface's patches.
+  Status add(SurfaceLoops of);
   NamedFace named_face(std::size_t surface) const { return surface < faces_.size() ? faces_[surface] : NamedFace{}; }
   /// Notes the patches of a face whose loops name edges. `first`: its first patch.
   void add_edges(std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops, const FaceTrims& trims,
