@@ -17,8 +17,10 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 #include <vector>
 
+#include "exact/straight_lines.h"
 #include "occt/guarded_calls.h"
 #include "occt/spline_line.h"
 
@@ -59,12 +61,17 @@ Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain
       points.push_back(vec3(surface.Pole(i + 1, j + 1).XYZ()));
       if (rational) weights.push_back(surface.Weight(i + 1, j + 1));
     }
-  const Interval part_u = covered(u.knots, u.degree, range_u(box)), part_v = covered(v.knots, v.degree, range_v(box));
-  const Domain domain{part_u.from, part_u.to, part_v.from, part_v.to};
-  return with_parameters(rational
-                             ? BSplineSurface::rational(u.degree, u.knots, v.degree, v.knots, points, weights, domain)
-                             : BSplineSurface::polynomial(u.degree, u.knots, v.degree, v.knots, points, domain),
-                         {});
+  StraightenedNet net{{u.degree, u.knots, covered(u.knots, u.degree, range_u(box))},
+                      {v.degree, v.knots, covered(v.knots, v.degree, range_v(box))},
+                      std::move(points),
+                      std::move(weights)};
+  shorten_straight_lines(net);
+  const Domain domain{net.u.part.from, net.u.part.to, net.v.part.from, net.v.part.to};
+  return with_parameters(
+      rational ? BSplineSurface::rational(net.u.degree, net.u.knots, net.v.degree, net.v.knots, net.points, net.weights,
+                                          domain)
+               : BSplineSurface::polynomial(net.u.degree, net.u.knots, net.v.degree, net.v.knots, net.points, domain),
+      {});
 }
 
 Result<FaceSurface> from_bezier(const Geom_BezierSurface& surface, const Domain& box) {
