@@ -218,8 +218,8 @@ class Closer {
       for (const InsertedVertex& vertex : inserted) cut->vertices.push_back(vertex.local);
       const std::size_t count = cut->triangles.size();
       const ChordBound chord = of_.chord(patch);
-      // A chord's sliver, and that of its parts beside it.
-      if (std::ranges::any_of(inserted, &InsertedVertex::is_on_chord)) cut->sliver *= 2;
+      // A chord's sliver, and that of its parts beside it, unless these lie within.
+      if (std::ranges::any_of(inserted, &InsertedVertex::widens_sliver)) cut->sliver *= 2;
       const auto itself = [](std::uint32_t vertex) { return vertex; };  // cut patches have one vertex at a pole
       for (const std::uint32_t k : insert_vertices(inserted, first, itself, cut->triangles))
         cut->measure(cut->triangles[k], chord);

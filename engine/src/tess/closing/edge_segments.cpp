@@ -9,6 +9,34 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
+namespace {
+
+/// Whether the control points of a piece turn to one side alone. So does the curve, as weights are positive; the piece
+/// is monotone, so it turns by at most a right angle.
+bool is_convex(const TrimPiece& piece) {
+  double least = 0, most = 0;
+  const auto& at = piece.curve.points;
+  for (std::size_t k = 2; k < at.size(); ++k) {
+    const double turn =
+        (at[k - 1].u - at[k - 2].u) * (at[k].v - at[k - 1].v) - (at[k - 1].v - at[k - 2].v) * (at[k].u - at[k - 1].u);
+    least = std::min(least, turn), most = std::max(most, turn);
+  }
+  return least == 0 || most == 0;
+}
+
+/// Whether a chord's curve is convex. Then chords between points of the curve lie between the chord and the curve, and
+/// their slivers within its own. Points that are moved towards the chord meet these chords first; those moved the other
+/// way meet the curve where they did before.
+bool is_convex(std::span<const TrimPiece> pieces, const CurveAlongEdge& curve, const EdgeSegment& segment) {
+  const auto [from, to] = std::minmax({curve.to_curve(segment.from), curve.to_curve(segment.to)});
+  const auto piece = std::ranges::partition_point(pieces.first(pieces.size() - 1),
+                                                  [&](const TrimPiece& of) { return of.range.to <= (from + to) / 2; });
+  const double same = least_same_share * (piece->range.to - piece->range.from);
+  return from >= piece->range.from - same && to <= piece->range.to + same && is_convex(*piece);
+}
+
+}  // namespace
+
 EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std::span<const Division> divisions,
                            std::span<const CutPatch> cuts, const EdgeStations* stations)
     : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts), stations_(stations) {}
@@ -138,7 +166,7 @@ PatchVertex EdgeSegments::insert(const EdgeSegment& segment, double s) {
                        segment.end,
                        t,
                        {std::clamp(domain.local_u(at.u), 0.0, 1.0), std::clamp(domain.local_v(at.v), 0.0, 1.0)},
-                       true});
+                       !is_convex(pieces, runs_.curve(run), segment)});
   return {run.patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
 }
 

@@ -22,7 +22,7 @@ struct InsertedVertex {
   std::uint32_t start = 0, end = 0;  ///< the vertices of the segment as it was
   double at = 0;                     ///< grows from start to end
   ParameterPoint local;              ///< in the patch's own parameters
-  bool is_on_chord = false;          ///< else it is on a side
+  bool widens_sliver = false;        ///< it is on a chord whose curve may lie on both sides of the parts
 };
 
 /// A vertex of a patch: one that it has, or an index into the inserted ones.
