@@ -48,9 +48,11 @@ void EdgeStations::find(const PatchSet::Impl& set, std::size_t edge,
   };
   // The direction that needs more stations comes first: they often do for the other one. This does not depend on the
   // order of faces.
-  const std::size_t along = divide_along(false), against = divide_along(true);
+  const std::size_t along = divide_along(false);
+  workspace.found_along.swap(workspace.found);
+  const std::size_t against = divide_along(true);
   const bool first = against > along;
-  if (!first && along > 0) divide_along(false);
+  if (!first) workspace.found.swap(workspace.found_along);
   if (along + against > 0) add_found();
   if (divide_along(!first) > 0) add_found();
   for (const EdgeRun& run : runs) {

@@ -25,7 +25,7 @@ class EdgeStations {
   /// The memory that a thread finds stations with.
   struct Workspace {
     PieceChords layer;
-    std::vector<double> found;
+    std::vector<double> found, found_along;
   };
   /// Finds the stations of an edge. Threads: any number, each with its own edges and its own workspace.
   ///
