@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "occt/guarded_calls.h"
 #include "occt/relative_place.h"
 #include "tessera/topology.h"
 
@@ -33,6 +35,12 @@ class PolygonMaker {
       while (end < of_edge.size() && of_edge[end].use == of_edge[begin].use) ++end;
       add_use(of_edge.subspan(begin, end - begin));
     }
+  }
+
+  /// Takes the polygons of another one, whose edges follow.
+  void append(PolygonMaker&& after) {
+    std::ranges::move(after.all_, std::back_inserter(all_));
+    lacking_.insert(lacking_.end(), after.lacking_.begin(), after.lacking_.end());
   }
 
   /// Looks for edges without a polygon: those that are points of the mesh get the node of a vertex there.
@@ -186,15 +194,26 @@ class PolygonMaker {
 
 }  // namespace
 
-EdgePolygons edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
-                           std::span<const handle<Poly_Triangulation>> made, const Shape& shape,
-                           const OcctShape& sources, std::span<const EdgeVertex> on_edges) {
-  PolygonMaker maker(set, nodes, made, sources);
+Result<EdgePolygons> edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
+                                   std::span<const handle<Poly_Triangulation>> made, const Shape& shape,
+                                   const OcctShape& sources, std::span<const EdgeVertex> on_edges,
+                                   const Execution& execution) {
+  std::vector<std::span<const EdgeVertex>> edges;
   for (std::size_t begin = 0, end = 0; begin < on_edges.size(); begin = end) {
     while (end < on_edges.size() && on_edges[end].edge == on_edges[begin].edge) ++end;
-    maker.add(on_edges.subspan(begin, end - begin));
+    edges.push_back(on_edges.subspan(begin, end - begin));
   }
-  return std::move(maker).finish(shape);
+  constexpr std::size_t edges_per_task = 32;
+  const std::size_t tasks = std::max<std::size_t>(1, (edges.size() + edges_per_task - 1) / edges_per_task);
+  std::vector<PolygonMaker> makers(tasks, PolygonMaker(set, nodes, made, sources));
+  const auto add_some = [&](std::size_t task) {
+    for (std::size_t k = task * edges_per_task; k < std::min(edges.size(), (task + 1) * edges_per_task); ++k)
+      makers[task].add(edges[k]);
+    return Status();
+  };
+  if (Status status = each_on_threads(tasks, 1, execution, add_some); !status.ok()) return status;
+  for (std::size_t task = 1; task < tasks; ++task) makers[0].append(std::move(makers[task]));
+  return std::move(makers[0]).finish(shape);
 }
 
 }}  // namespace tessera::abi_0_1

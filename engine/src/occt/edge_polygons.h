@@ -31,9 +31,11 @@ struct EdgePolygons {
 /// of its nodes from the edge's own curve if that is larger.
 ///
 /// `on_edges`: as edge_vertices() lists them; `made`: `[face]`, from `nodes`. An edge that a face without
-/// a triangulation has gets none there. May throw Standard_Failure.
-EdgePolygons edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
-                           std::span<const opencascade::handle<Poly_Triangulation>> made, const Shape& shape,
-                           const OcctShape& sources, std::span<const EdgeVertex> on_edges);
+/// a triangulation has gets none there. Edges are shared among the threads of the caller's arena. Errors: cancelled,
+/// internal (an exception of OpenCASCADE). May throw Standard_Failure.
+Result<EdgePolygons> edge_polygons(const PatchSet& set, const FaceTriangulations& nodes,
+                                   std::span<const opencascade::handle<Poly_Triangulation>> made, const Shape& shape,
+                                   const OcctShape& sources, std::span<const EdgeVertex> on_edges,
+                                   const Execution& execution);
 
 }}  // namespace tessera::abi_0_1

@@ -183,9 +183,11 @@ class Triangulator {
       return Status();
     };
     if (Status status = for_faces(make); !status.ok()) return status;
-    const EdgePolygons edges = edge_polygons(set, triangulations, made, shape_, sources_, *on_edges);
-    if (Status status = store(sources_, made, edges.polygons); !status.ok()) return status;
-    for (const std::uint32_t face : edges.lacking)
+    const Result<EdgePolygons> edges =
+        edge_polygons(set, triangulations, made, shape_, sources_, *on_edges, {.cancel = progress_.loops().cancel});
+    if (!edges) return edges.status();
+    if (Status status = store(sources_, made, edges->polygons); !status.ok()) return status;
+    for (const std::uint32_t face : edges->lacking)
       report_.faults.push_back(
           {sources_.faces[face].face, "an edge of it has no polygon, or a part of one: its border does not follow it"});
     for (std::size_t k = 0; k < made.size(); ++k) {

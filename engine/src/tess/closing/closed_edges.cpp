@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/union_find.h"
+#include "parallel/parallel_for.h"
 #include "tess/bounds/rounded_up.h"
 #include "tess/closing/station_vertices.h"
 #include "tess/trimmed/patch_points.h"
@@ -99,10 +100,13 @@ class Closer {
   /// Finds the faces' own points of all vertices.
   Status evaluate() {
     own_.resize(count_);
-    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch) {
-      if (Status status = look_at_cancel(); !status.ok()) return status;
-      evaluate(patch);
-    }
+    constexpr std::size_t patches_per_task = 64;
+    const auto evaluate_some = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t patch = begin; patch < end; ++patch) evaluate(static_cast<std::uint32_t>(patch));
+    };
+    const Execution quiet{.cancel = of_.cancel};
+    if (Status status = parallel_for(bases_.size() - 1, patches_per_task, quiet, evaluate_some); !status.ok())
+      return status;
     const std::span<const InsertedVertex> inserted = segments_.inserted();
     std::optional<PatchPoints> points;
     for (std::size_t k = 0; k < inserted.size(); ++k) {

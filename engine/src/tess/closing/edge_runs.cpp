@@ -1,10 +1,12 @@
 #include "tess/closing/edge_runs.h"
 
 #include <cmath>
+#include <new>
 #include <numeric>
 
 #include "base/impl_access.h"
 #include "block/patch_trims.h"
+#include "parallel/parallel_for.h"
 #include "tess/trimmed/cut_patch.h"
 #include "tess/trimmed/patch_sides.h"
 #include "trim/trim_region_impl.h"
@@ -120,7 +122,24 @@ ParameterPoint point_at(std::span<const TrimPiece> pieces, double t) {
 }
 
 EdgeRuns::EdgeRuns(const PatchSet::Impl& set) : edges_(set.edges.get()) {
-  for (std::uint32_t face = 0; face < edges_->faces.size(); ++face) add_face(set, face);
+  constexpr std::size_t faces_per_task = 32;
+  const std::size_t count = edges_->faces.size();
+  std::vector<std::uint32_t> uses(count);
+  std::uint32_t next_use = 0;
+  for (std::size_t face = 0; face < count; ++face) {
+    uses[face] = next_use;
+    for (const TrimLoop& loop : *edges_->faces[face].loops) next_use += static_cast<std::uint32_t>(loop.coedges.size());
+  }
+  std::vector<Runs> some((count + faces_per_task - 1) / faces_per_task);
+  const auto add_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t face = begin; face < end; ++face)
+      add_face(set, static_cast<std::uint32_t>(face), uses[face], some[begin / faces_per_task]);
+  };
+  if (!parallel_for(count, faces_per_task, {}, add_some).ok()) throw std::bad_alloc();  // the only error
+  for (const Runs& of : some) {
+    runs_.insert(runs_.end(), of.along_edges.begin(), of.along_edges.end());
+    gaps_.insert(gaps_.end(), of.gaps.begin(), of.gaps.end());
+  }
   sort();
 }
 
@@ -135,15 +154,15 @@ CurveAlongEdge EdgeRuns::curve(std::uint32_t face, const TrimPiece& piece) const
   return {&loop.coedges[piece.curve_index], &loop.curves[piece.curve_index]};
 }
 
-void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
+void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face, std::uint32_t use, Runs& to) const {
   const PatchEdges::Face& of = edges_->faces[face];
   const TrimRegion::Impl& region = impl_of(of.region);
   const std::vector<TrimPiece>& pieces = region.pieces;
   std::vector<std::uint32_t> first_uses;
   std::optional<FaceSides> sides;
   for (const TrimLoop& loop : *of.loops) {
-    first_uses.push_back(next_use_);
-    next_use_ += static_cast<std::uint32_t>(loop.coedges.size());
+    first_uses.push_back(use);
+    use += static_cast<std::uint32_t>(loop.coedges.size());
   }
   for (std::uint32_t piece = 0; piece < pieces.size();) {
     EdgeRun run;
@@ -166,7 +185,7 @@ void EdgeRuns::add_face(const PatchSet::Impl& set, std::uint32_t face) {
       run.patch = of.patches[a * region.count_v() + interval_of(region.lines.v.lines, (at.start().v + at.end().v) / 2)];
     }
     const bool is_cut = set.trims && run.patch != no_id && set.trims->is_cut[run.patch];
-    if (run.is_side ? run.patch != no_id : is_cut) (coedge ? runs_ : gaps_).push_back(run);
+    if (run.is_side ? run.patch != no_id : is_cut) (coedge ? to.along_edges : to.gaps).push_back(run);
   }
 }
 

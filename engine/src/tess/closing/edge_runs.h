@@ -51,7 +51,7 @@ double same_share(const PatchSet::Impl& set, double tolerance);
 /// All runs of a set, edge by edge. They depend on the set's loops alone.
 class EdgeRuns {
  public:
-  /// The set must have edges, and must outlive the runs.
+  /// The set must have edges, and must outlive the runs. Faces are shared among the threads of the caller's arena.
   TESSERA_INTERNAL_EXPORT explicit EdgeRuns(const PatchSet::Impl& set);
 
   /// The runs of an edge: use by use, and along each in the direction of its curve.
@@ -83,7 +83,12 @@ class EdgeRuns {
   const PatchEdges& edges() const { return *edges_; }
 
  private:
-  void add_face(const PatchSet::Impl& set, std::uint32_t face);
+  /// The runs of some faces that follow each other.
+  struct Runs {
+    std::vector<EdgeRun> along_edges, gaps;
+  };
+  /// Adds the runs of a face. `use`: the number of its first coedge.
+  void add_face(const PatchSet::Impl& set, std::uint32_t face, std::uint32_t use, Runs& to) const;
   /// Finds the patch and the side of a run along a line between patches. `low`: the side along
   /// that line of the patch above it; `sides`: those of the face, once they are known.
   void find_side(EdgeRun& run, Side low, std::optional<FaceSides>& sides) const;
@@ -93,7 +98,6 @@ class EdgeRuns {
   std::vector<EdgeRun> runs_, gaps_;
   std::vector<std::uint32_t> first_;     ///< by edge
   std::vector<std::uint32_t> by_patch_;  ///< runs by growing patch
-  std::uint32_t next_use_ = 0;
 };
 
 /// Returns the places along a side at which pieces that follow each other begin and end, the lesser one first.

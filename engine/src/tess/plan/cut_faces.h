@@ -13,8 +13,9 @@ namespace tessera { inline namespace abi_0_1 {
 
 /// The facts that cutting and closing take from the set's loops, whatever the tolerance is.
 struct CutFaces {
-  /// `closes_edges`: whether faces are to get the same vertices along edges. The set must outlive the result.
-  static CutFaces of(const PatchSet::Impl& set, bool closes_edges);
+  /// `closes_edges`: whether faces are to get the same vertices along edges. The set must outlive the result. Faces are
+  /// shared among the threads of the caller's arena. Errors: cancelled, out_of_memory.
+  static Result<CutFaces> of(const PatchSet::Impl& set, bool closes_edges, const Execution& execution);
 
   std::vector<FaceSides> sides;           ///< by region of the set's trims
   std::optional<EdgeRuns> runs;           ///< if edges are closed

@@ -43,7 +43,9 @@ Result<PlanFacts> find_plan_facts(const PatchSet::Impl& set, const PlannerOption
   PlanFacts facts{PatchNeeds(set, options), {}, {}};
   Result<SharedEdges> edges = bound_and_find_edges(facts.needs, execution);
   if (!edges) return edges.status();
-  facts.faces = CutFaces::of(set, options.closes_edges);
+  Result<CutFaces> faces = CutFaces::of(set, options.closes_edges, {.cancel = execution.cancel});
+  if (!faces) return faces.status();
+  facts.faces = *std::move(faces);
   facts.borders = Borders(facts.needs, *std::move(edges), facts.faces.runs ? &*facts.faces.runs : nullptr);
   facts.needs.take_weld(facts.borders.weld());
   if (Status status = facts.needs.bound_views(execution); !status.ok()) return status;

@@ -104,6 +104,7 @@ T* find_cut(std::span<T> cuts, std::uint32_t patch) {
 
 /// The sides of all patches of a face.
 struct FaceSides {
+  FaceSides() = default;
   explicit FaceSides(const TrimRegion& region);
   PatchSides u, v;  ///< lines u = const; lines v = const
 };
