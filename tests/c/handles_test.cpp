@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "c/c_objects.h"
+#include "c/handle_bits.h"
 
 namespace tessera::test { namespace {
 
@@ -35,6 +36,28 @@ TEST(CHandles, ReleasedOnesAreErrorsForEver) {
     const Handle<tsr_model> another = model_of(wavy_field(1, 1));  // takes the place in the table
     EXPECT_NE(another.get(), model);
   }
+}
+
+/// Handles of both sizes of pointers, of which this machine has one.
+template <class Word>
+void expect_parts_of_handles() {
+  using Bits = HandleBits<Word>;
+  EXPECT_EQ(Bits::place_bits + Bits::round_bits, std::numeric_limits<Word>::digits);
+  for (const std::uint32_t place : {1u, 77u, Bits::place_mask})
+    for (const std::uint32_t round : {0u, 1u, Bits::round_mask}) {
+      const Word handle = Bits::packed(place, round);
+      EXPECT_NE(handle, 0u);
+      EXPECT_EQ(Bits::place(handle), place);
+      EXPECT_TRUE(Bits::is_of_round(handle, round));
+      EXPECT_FALSE(Bits::is_of_round(handle, round + 1 - (round == Bits::round_mask ? 2 : 0)));
+    }
+}
+
+TEST(CHandles, HoldPlaceAndRoundInPointersOfBothSizes) {
+  expect_parts_of_handles<std::uint64_t>();
+  expect_parts_of_handles<std::uint32_t>();
+  EXPECT_EQ(HandleBits<std::uint32_t>::packed(5, 4097), HandleBits<std::uint32_t>::packed(5, 1));
+  EXPECT_TRUE(HandleBits<std::uint32_t>::is_of_round(HandleBits<std::uint32_t>::packed(5, 1), 4097));
 }
 
 TEST(CHandles, NullAndOtherKindsAreErrors) {

@@ -1,5 +1,6 @@
 #include "c/handles.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -7,8 +8,12 @@
 #include <new>
 #include <utility>
 
+#include "c/handle_bits.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
+
+using Bits = HandleBits<std::uintptr_t>;
 
 /// A slot's state, one word so that it changes at once: which object lies there, by number; the references that callers
 /// own; and the calls that use it.
@@ -41,7 +46,7 @@ struct Slot {
 /// release.
 class Table {
  public:
-  std::uint64_t add(std::shared_ptr<Object> object) {
+  std::uintptr_t add(std::shared_ptr<Object> object) {
     const std::lock_guard lock(mutex_);
     const std::uint32_t place = take();
     Slot& slot = *find(place);
@@ -49,7 +54,7 @@ class Table {
     State state = std::bit_cast<State>(slot.state.load());
     state.owners = 1;
     slot.state.store(std::bit_cast<std::uint64_t>(state), std::memory_order_release);
-    return std::uint64_t{state.round} << 32 | place;
+    return Bits::packed(place, state.round);
   }
   /// Frees a slot that nobody refers to any more.
   void remove(std::uint32_t place) {
@@ -71,7 +76,7 @@ class Table {
   std::mutex& mutex() { return mutex_; }
 
  private:
-  static constexpr std::uint32_t chunk_size = 1024;
+  static constexpr std::uint32_t chunk_size = 1024, max_chunks = 16384;
 
   std::uint32_t take() {
     if (first_free_ != 0) {
@@ -87,7 +92,7 @@ class Table {
   }
 
   std::mutex mutex_;
-  std::array<std::atomic<Slot*>, 16384> chunks_ = {};
+  std::array<std::atomic<Slot*>, std::min(max_chunks, Bits::place_mask / chunk_size)> chunks_ = {};
   std::uint32_t count_ = 1;  // 0 is no place, so that no handle is a null pointer
   std::uint32_t first_free_ = 0, last_free_ = 0;
 };
@@ -97,14 +102,15 @@ Table& table() {
   return table;
 }
 
-std::uint64_t number_of(const void* handle) { return std::bit_cast<std::uint64_t>(handle); }
+std::uint32_t place_of(const void* handle) { return Bits::place(std::bit_cast<std::uintptr_t>(handle)); }
 
 /// Changes the state of a handle's slot. Returns the slot; null if the handle is none, or may not be changed so.
 template <class Change>
 Slot* update(const void* handle, Change change, State& state) {
-  const std::uint64_t number = number_of(handle);
-  Slot* const slot = table().find(static_cast<std::uint32_t>(number));
-  const auto checked = [&](State& of) { return of.round == number >> 32 && of.owners > 0 && change(of); };
+  Slot* const slot = table().find(place_of(handle));
+  const auto checked = [&](State& of) {
+    return Bits::is_of_round(std::bit_cast<std::uintptr_t>(handle), of.round) && of.owners > 0 && change(of);
+  };
   return slot && slot->update(checked, state) ? slot : nullptr;
 }
 
@@ -123,7 +129,7 @@ bool release_handle(const void* handle) {
   if (!update(
           handle, [](State& of) { return --of.owners, true; }, state))
     return false;
-  if (state.owners == 0 && state.calls == 0) table().remove(static_cast<std::uint32_t>(number_of(handle)));
+  if (state.owners == 0 && state.calls == 0) table().remove(place_of(handle));
   return true;
 }
 
@@ -132,7 +138,7 @@ Pin::Pin(const void* handle) {
   Slot* const slot = update(
       handle, [](State& of) { return of.calls < max_count && (++of.calls, true); }, state);
   if (!slot) return;
-  place_ = static_cast<std::uint32_t>(number_of(handle));
+  place_ = place_of(handle);
   object_ = &slot->object;
 }
 
