@@ -41,7 +41,7 @@ void StripCell::find_window() {
   const auto u_at = [&](double s, double u) { return std::clamp(base + s * (u - base), 0.0, 1.0); };
   const auto [low, high] =
       std::minmax({u_at(square_.s0, from.u), u_at(square_.s0, to.u), u_at(square_.s1, from.u), u_at(square_.s1, to.u)});
-  const auto [below, above] = std::minmax(std::clamp(from.v, 0.0, 1.0), std::clamp(to.v, 0.0, 1.0));
+  const auto [below, above] = std::minmax({std::clamp(from.v, 0.0, 1.0), std::clamp(to.v, 0.0, 1.0)});
   window_ = {low, high, below, above};
   half_u_ = 0.5 * (high - low), half_v_ = 0.5 * (above - below);
   const double reach = std::max(std::abs(from.u - base), std::abs(to.u - base));
