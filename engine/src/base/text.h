@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -28,7 +29,7 @@ namespace tessera { inline namespace abi_0_1 {
 [[gnu::cold]] inline std::string text(const Box3& box) { return text(box.lower) + " to " + text(box.upper); }
 
 /// "1 vertex", "2 vertices"; `plural` if an s is not enough.
-[[gnu::cold]] inline std::string counted(std::size_t count, std::string_view noun, std::string_view plural = {}) {
+[[gnu::cold]] inline std::string counted(std::uint64_t count, std::string_view noun, std::string_view plural = {}) {
   std::string out = std::to_string(count) + ' ';
   out += count == 1 || plural.empty() ? noun : plural;
   if (count != 1 && plural.empty()) out += 's';

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -116,6 +117,11 @@ CStatus check_size(const char* name, std::size_t given, std::size_t least, std::
 /// Checks a member that must be from 0 to `most`.
 CStatus check_member(const char* name, const char* member, std::int64_t value, std::int64_t most);
 
+/// A count of the caller's; the largest there is for those beyond memory.
+inline std::size_t clamped_count(std::uint64_t count) {
+  return static_cast<std::size_t>(std::min<std::uint64_t>(count, std::numeric_limits<std::size_t>::max()));
+}
+
 /// Checks the members that mean the same in every struct: `reserved` is 0, flags are 0 or 1.
 template <class T>
 CStatus check_members(const char* name, const T& read) {
@@ -175,9 +181,12 @@ CStatus view_of(const char* name, const void* data, std::size_t count, std::int6
   if (component == 0) component = size;
   if (record % size != 0 || component % size != 0 || std::bit_cast<std::uintptr_t>(data) % alignof(T) != 0)
     return bad(std::string(name) + ": addresses must be multiples of " + std::to_string(size));
+  if (!std::in_range<std::ptrdiff_t>(record) || !std::in_range<std::ptrdiff_t>(component))
+    return bad(std::string(name) + ": records or components are further apart than memory is large");
   T* const first = static_cast<T*>(const_cast<void*>(data));
-  for (std::size_t c = 0; c < N; ++c) view.component[c] = first + static_cast<std::int64_t>(c) * (component / size);
-  view.stride = record / size;
+  const auto step = static_cast<std::ptrdiff_t>(component / size);
+  for (int c = 0; c < N; ++c) view.component[static_cast<std::size_t>(c)] = first + c * step;
+  view.stride = static_cast<std::ptrdiff_t>(record / size);
   view.size = count;
   return {};
 }

@@ -109,7 +109,7 @@ tsr_status tsr_measures_new(tsr_measures** measures, const tsr_model* model, con
       return status;
     return run_work(run, [&](const Execution& execution) -> CStatus {
       const auto made = std::make_shared<CMeasures>();
-      const MeasureOptions wanted{.accuracy = own.accuracy, .max_cells = own.max_cells};
+      const MeasureOptions wanted{.accuracy = own.accuracy, .max_cells = clamped_count(own.max_cells)};
       if (CStatus status = measure_model(of->model, own.flags, wanted, execution, *made); status.code) return status;
       return give(measures, made);
     });

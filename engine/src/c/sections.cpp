@@ -105,7 +105,7 @@ tsr_status tsr_sections_new(tsr_sections** sections, const tsr_set* set, const d
     if (CStatus status = read_struct("tsr_section_options", options, own); status.code) return status;
     if (CStatus status = check_member("tsr_section_options", "limit", own.limit, TSR_LIMIT_ABOVE); status.code)
       return status;
-    SectionOptions wanted{.limit = static_cast<PlaneLimit>(own.limit), .max_points = own.max_points};
+    SectionOptions wanted{.limit = static_cast<PlaneLimit>(own.limit), .max_points = clamped_count(own.max_points)};
     if (own.tolerance != 0) wanted.tolerance = own.tolerance;
     if (!(own.contact < 0)) wanted.contact = own.contact;
     if (!(own.max_gap < 0)) wanted.max_gap = own.max_gap;

@@ -221,7 +221,8 @@ Result<ModelPart> part_of(const Model& model, const SurfaceExtents& extents, std
     part.end = part.first + (end - first);
     if (model.instances.empty()) {
       part.model.surfaces.reserve(part.surfaces.size());
-      for (const std::uint64_t k : part.surfaces) part.model.surfaces.push_back(model.surfaces[k]);
+      for (const std::uint64_t k : part.surfaces)
+        part.model.surfaces.push_back(model.surfaces[static_cast<std::size_t>(k)]);
     } else {
       take_instances(model, marks, part.model);
     }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 
-#include "base/internal_export.h"
+#include "base/saturated.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -19,7 +19,7 @@ struct ListSize {
 /// Makes room for `count` elements of a vector or string, and for `spare` more. The list must stay where it is. Throws std::bad_alloc.
 template <class List>
 ListSize size_of(List& list, std::size_t count, std::size_t spare = 0) {
-  list.reserve(count + spare);
+  list.reserve(saturated_sum(count, spare));
   const auto resize = [&list, count] { list.resize(count); };
   return {{reinterpret_cast<std::byte*>(list.data()), count * sizeof *list.data()}, resize};
 }

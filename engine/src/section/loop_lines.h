@@ -26,7 +26,7 @@ class LoopVertices {
   };
   struct Hash {
     std::size_t operator()(const Key& key) const {
-      return std::hash<double>()(key.u) * 0x9e3779b97f4a7c15u + std::hash<double>()(key.v);
+      return static_cast<std::size_t>(std::hash<double>()(key.u) * 0x9e3779b97f4a7c15u + std::hash<double>()(key.v));
     }
   };
   std::unordered_map<Key, double, Hash> heights_;

@@ -34,7 +34,7 @@ struct SideNet {
     std::uint64_t hash = points.size();
     for (const auto& p : points)
       for (const double x : p) hash = std::rotl((hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u, 29);
-    return hash;
+    return static_cast<std::size_t>(hash);
   }
   Vec3 point(std::size_t k) const { return {points[k][0], points[k][1], points[k][2]}; }
   HeightLine line(const Levels& levels) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/saturated.h"
 #include "surface/net/patch_pieces.h"
 #include "surface/net/validate.h"
 
@@ -9,14 +10,14 @@ namespace tessera { inline namespace abi_0_1 {
 
 SurfaceNet::SurfaceNet(int m, std::vector<double> along_u, int n, std::vector<double> along_v, bool rational)
     : degree_u(m), degree_v(n), breaks_u(std::move(along_u)), breaks_v(std::move(along_v)) {
-  points.resize(rows() * columns());
+  points.resize(saturated_product(rows(), columns()));
   if (rational) weights.resize(points.size());
 }
 
 Result<PatchGrid> SurfaceNet::patches() const {
   const std::size_t count_u = breaks_u.size() - 1, count_v = breaks_v.size() - 1;
   const std::size_t m = static_cast<std::size_t>(degree_u), n = static_cast<std::size_t>(degree_v), order = n + 1;
-  PatchPieces pieces(degree_u, degree_v, count_u * count_v, !weights.empty());
+  PatchPieces pieces(degree_u, degree_v, saturated_product(count_u, count_v), !weights.empty());
   for (std::size_t patch = 0; patch < count_u * count_v; ++patch) {
     const std::size_t a = patch / count_v, b = patch % count_v;
     for (std::size_t i = 0; i <= m; ++i) {

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/saturated.h"
 #include "convert/spline/curve_pieces.h"
 #include "convert/spline/spline_strips.h"
 #include "tessera/guard.h"
@@ -48,8 +49,8 @@ Result<PatchGrid> to_bezier(const BSplineSurface& surface) {
   return guarded([&]() -> Result<PatchGrid> {
     ExtractedRows rows(surface);
     if (Status status = rows.compute(); !status.ok()) return status;
-    PatchPieces pieces(surface.degree_u(), surface.degree_v(), rows.u().span_count() * rows.v().span_count(),
-                       surface.is_rational());
+    PatchPieces pieces(surface.degree_u(), surface.degree_v(),
+                       saturated_product(rows.u().span_count(), rows.v().span_count()), surface.is_rational());
     const Result<Box3> box = write_patches(rows, pieces);
     if (!box) return box.status();
     return PatchGrid::make(rows.u().breaks, rows.v().breaks, pieces.take(), {}, *box);

@@ -156,9 +156,10 @@ class BodyReader {
     }
     if (!present[0] || !present[1] || !present[2]) return values_.error("vertices have no x, y, z");
     const bool normals = present[3] && present[4] && present[5], parameters = present[6] && present[7];
-    mesh_.positions.reserve(3 * element.count);
-    if (normals) mesh_.normals.reserve(3 * element.count);
-    if (parameters) mesh_.parameters.reserve(2 * element.count);
+    const auto count = static_cast<std::size_t>(element.count);  // the file has as many bytes: see check_size()
+    mesh_.positions.reserve(3 * count);
+    if (normals) mesh_.normals.reserve(3 * count);
+    if (parameters) mesh_.parameters.reserve(2 * count);
     std::array<float, vertex_names.size() + 1> vertex{};
     for (std::uint64_t k = 0; k < element.count; ++k) {
       for (std::size_t p = 0; p < places.size(); ++p) {

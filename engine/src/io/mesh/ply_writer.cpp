@@ -168,7 +168,8 @@ Status write_ply(const Mesh& mesh, OutputFile& out, const MeshWriteOptions&) {
     const auto pack = [&](std::size_t first, std::size_t last, char* to) {
       layout->pack(mesh, {}, kind, first, last, to);
     };
-    Status status = write_packed(out, count_of(mesh, kind), layout->record_bytes(kind), pack);
+    const auto count = static_cast<std::size_t>(count_of(mesh, kind));
+    Status status = write_packed(out, count, layout->record_bytes(kind), pack);
     if (!status.ok()) return status;
   }
   return {};

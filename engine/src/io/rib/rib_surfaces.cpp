@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "base/saturated.h"
+
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
@@ -22,7 +24,7 @@ Status read_positions(const RibSurfaceText& text, std::size_t points, Positions&
     if (name == "P" || name == "Pw" || name == "Pz") {
       positions.name = name;
       status = lexer.take_array("a finite number for " + std::string(name), positions.values,
-                                points * positions.components());
+                                saturated_product(points, positions.components()));
     } else {
       status = lexer.skip_value();
     }
@@ -31,7 +33,7 @@ Status read_positions(const RibSurfaceText& text, std::size_t points, Positions&
   if (positions.name.empty()) {
     return lexer.expected("positions (\"P\", \"Pw\" or \"Pz\") of " + std::string(text.request));
   }
-  const std::size_t wanted = points * positions.components();
+  const std::size_t wanted = saturated_product(points, positions.components());
   if (positions.values.size() == wanted) return {};
   return text.failure("expected " + std::to_string(wanted) + " numbers for " + std::string(positions.name) +
                       ", found " + std::to_string(positions.values.size()));
@@ -78,7 +80,7 @@ Status read_wrap(const RibSurfaceText& text, const std::string& direction, RibDi
 Result<std::vector<Surface>> read_mesh(const RibSurfaceText& text, const RibDirection& u, const RibDirection& v) {
   const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
   Positions positions;
-  Status status = read_positions(text, count_u * count_v, positions);
+  Status status = read_positions(text, saturated_product(count_u, count_v), positions);
   if (!status.ok()) return status;
   Result<std::vector<double>> x = std::vector<double>(), y = std::vector<double>();
   if (positions.name == "Pz") {
@@ -157,7 +159,7 @@ Result<std::vector<Surface>> read_nu_patch(const RibSurfaceText& text) {
   if (!status.ok()) return status;
   const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
   Positions positions;
-  status = read_positions(text, count_u * count_v, positions);
+  status = read_positions(text, saturated_product(count_u, count_v), positions);
   if (!status.ok()) return status;
   const bool field = positions.name == "Pz";
   RibNet net = make_net(positions, count_u, count_v, field ? u.greville() : std::vector<double>(),

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "base/saturated.h"
 #include "base/text.h"
 #include "io/spline/item_reader.h"
 #include "tessera/guard.h"
@@ -132,7 +133,7 @@ class G2ObjectReader {
     if (dimension < 2) return std::optional<BSplineSurface>();
     const auto count_u = static_cast<std::size_t>(u.points), count_v = static_cast<std::size_t>(v.points);
     const auto bytes = static_cast<std::size_t>(2 * (dimension + rational));  // the least that a point takes
-    if (count_u * count_v > (cursor_.remaining() + beyond_) / bytes + 1) {
+    if (saturated_product(count_u, count_v) > (cursor_.remaining() + beyond_) / bytes + 1) {
       return numbers.failure("the file is shorter than its " + std::to_string(count_u) + " x " +
                              std::to_string(count_v) + " points");
     }

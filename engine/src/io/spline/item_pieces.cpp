@@ -141,7 +141,7 @@ Result<Model> walk_items(ItemReader& reader, std::string_view text, std::string_
       [&](ReadItem& item) {
         if (!item.surface) return;
         if (model.surfaces.empty()) model.surfaces.reserve(reader.expected(text.size()));
-        make_room(model.surfaces, walk.offset(), text.size());
+        make_room(model.surfaces, static_cast<std::size_t>(walk.offset()), text.size());
         model.surfaces.push_back(*std::move(item.surface));
       });
   if (!status.ok()) return status;

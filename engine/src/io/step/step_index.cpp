@@ -151,7 +151,9 @@ const StepInstance* StepIndex::find(std::uint64_t number) const {
   // Most files number their instances without gaps.
   const std::uint64_t first = instances_.empty() ? 0 : instances_.front().number;
   const std::uint64_t guess = number - first;
-  if (guess < instances_.size() && instances_[guess].number == number) return &instances_[guess];
+  if (guess < instances_.size())
+    if (const StepInstance& guessed = instances_[static_cast<std::size_t>(guess)]; guessed.number == number)
+      return &guessed;
   const auto found = std::ranges::lower_bound(instances_, number, {}, &StepInstance::number);
   return found != instances_.end() && found->number == number ? &*found : nullptr;
 }
@@ -184,9 +186,9 @@ std::vector<std::uint32_t> StepIndex::with_part(std::string_view kind) const {
 }
 
 std::size_t StepIndex::line(std::uint64_t place) const {
-  const std::size_t block = std::min<std::size_t>(place, text_.size()) / line_block;
-  const std::size_t begin = block * line_block;
-  return 1 + lines_before_[block] + line_ends(text_.substr(begin, place - begin));
+  const auto end = static_cast<std::size_t>(std::min<std::uint64_t>(place, text_.size()));
+  const std::size_t block = end / line_block, begin = block * line_block;
+  return 1 + lines_before_[block] + line_ends(text_.substr(begin, end - begin));
 }
 
 void StepIndex::count_lines() {

@@ -49,7 +49,9 @@ class StepIndex {
   const StepInstance* find(std::uint64_t number) const;
   /// Returns the kind of the instance with this number; empty if there is none, or if it is of several kinds.
   std::string_view kind_of(std::uint64_t number) const;
-  std::string_view record(const StepInstance& of) const { return text_.substr(of.begin, of.length); }
+  std::string_view record(const StepInstance& of) const {
+    return text_.substr(static_cast<std::size_t>(of.begin), of.length);
+  }
   std::span<const std::string_view> kinds() const { return kinds_; }  ///< distinct names, such as "ADVANCED_FACE"
   /// Returns the places in instances() of those of one kind alone.
   std::span<const std::uint32_t> of_kind(std::string_view kind) const;

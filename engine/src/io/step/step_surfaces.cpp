@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/saturated.h"
 #include "base/text.h"
 #include "io/step/step_geometry.h"
 #include "io/step/step_splines.h"
@@ -62,7 +63,7 @@ void read_weights(StepEntity& entity, Net& net) {
       entity.fail("a row has " + counted(weights.size(), "weight") + ", expected " + std::to_string(net.count_v));
     net.weights.insert(net.weights.end(), weights.begin(), weights.end());
   }
-  if (net.weights.size() != net.count_u * net.count_v)
+  if (net.weights.size() != saturated_product(net.count_u, net.count_v))
     entity.fail("has " + counted(net.weights.size(), "weight") + " for " + counted(net.count_u * net.count_v, "point"));
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/saturated.h"
 #include "tessera/bezier_patch.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -20,7 +21,7 @@ class PatchPieces {
         degree_v_(degree_v),
         count_(count),
         size_(static_cast<std::size_t>(degree_u + 1) * static_cast<std::size_t>(degree_v + 1)),
-        memory_(count * size_ * (sizeof(Vec3) + (rational ? sizeof(double) : 0))),
+        memory_(saturated_product(count, size_ * (sizeof(Vec3) + (rational ? sizeof(double) : 0)))),
         points_(static_cast<Vec3*>(memory_.data())),
         weights_(rational ? reinterpret_cast<double*>(points_ + count * size_) : nullptr) {}
 

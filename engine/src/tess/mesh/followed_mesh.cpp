@@ -148,7 +148,7 @@ Result<std::size_t> ProvenMesh::redivide(const PatchSet& set, PlanUpdate::Outcom
   if (outcome == PlanUpdate::Outcome::redivided && update_->borders_hold()) {
     CertifiedPlan plan = update_->redivided(of(impl_of(set)));
     const MeshCapacity size = plan.capacity();
-    if (size.triangles <= options_.max_triangles && size.vertices <= max_vertices) {
+    if (size.triangles <= options_.max_triangles && has_32_bit_indices(size)) {
       ProvenMesh next(set, options_, tolerance_, std::move(plan), update_->facts(), isa_);
       if (Status status = next.join(impl_of(set), update_->facts(), execution); !status.ok()) return status;
       return replace(next);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/saturated.h"
 #include "base/text.h"
 #include "eval/patch_edits.h"
 #include "eval/uniform_grid.h"
@@ -75,7 +76,7 @@ class UniformMesh final : public Tessellation::Impl {
 
   MeshCapacity capacity() const override { return before(shapes_.size()); }
   MeshCapacity before(std::size_t patch) const override {
-    return {patch * rates_.vertices(), lone_triangle(patch), quads_ ? first_quad_[patch] : 0};
+    return {saturated_product(patch, rates_.vertices()), lone_triangle(patch), quads_ ? first_quad_[patch] : 0};
   }
 
   Mesh allocate() const override { return empty_mesh(capacity(), origin_); }
@@ -124,8 +125,8 @@ class UniformMesh final : public Tessellation::Impl {
       const PatchShape shape = PatchShape::of(set.patches[k], set.collapsed[k]);
       changed += !(shape == shapes_[k]);
       shapes_[k] = shape;
-      first_triangle_[k + 1] = first_triangle_[k] + triangle_count(shape, rates_);
-      if (quads_) first_quad_[k + 1] = first_quad_[k] + quad_count(shape, rates_);
+      first_triangle_[k + 1] = saturated_sum(first_triangle_[k], triangle_count(shape, rates_));
+      if (quads_) first_quad_[k + 1] = saturated_sum(first_quad_[k], quad_count(shape, rates_));
     }
     return changed;
   }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "base/saturated.h"
+
 namespace tessera { inline namespace abi_0_1 {
 
 void CertifiedPlan::lay_out() {
   const std::size_t patches = patches_.divisions.size();
   for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
   std::size_t vertices = 0, triangles = 0, quads = 0;
+  const auto add = [](std::size_t& sum, std::size_t count) { sum = saturated_sum(sum, count); };
   const std::span<const CutPatch> cuts = this->cuts();
   auto cut = cuts.begin();
   std::size_t next_cut = cuts.empty() ? patches : cut->patch;
@@ -21,18 +24,18 @@ void CertifiedPlan::lay_out() {
     first_triangle_[patch] = triangles;
     first_quad_[patch] = quads;
     if (!division.empty)
-      vertices += division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count());
-    triangles += division.triangle_count();
-    quads += division.cell_count();
+      add(vertices, division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count()));
+    add(triangles, division.triangle_count());
+    add(quads, division.cell_count());
     if (edit != edits.end() && edit->patch == patch) {
-      vertices += edit->vertices.size();
-      triangles += edit->added.size();
+      add(vertices, edit->vertices.size());
+      add(triangles, edit->added.size());
       ++edit;
     }
     if (patch != next_cut) continue;
-    vertices += cut->vertices.size();
-    triangles += cut->triangles.size();
-    quads += cut->quad_count();
+    add(vertices, cut->vertices.size());
+    add(triangles, cut->triangles.size());
+    add(quads, cut->quad_count());
     next_cut = ++cut == cuts.end() ? patches : cut->patch;
   }
   first_vertex_[patches] = vertices;

@@ -19,6 +19,7 @@
 namespace tessera { inline namespace abi_0_1 {
 
 inline constexpr std::uint64_t max_vertices = std::uint64_t{1} << 32;  ///< the limit of 32-bit indices
+inline bool has_32_bit_indices(const MeshCapacity& size) { return std::uint64_t{size.vertices} <= max_vertices; }
 
 /// The data that few plans have. It takes memory of its own there.
 struct RarePatches {

@@ -45,7 +45,7 @@ Result<CertifiedPlan> make_limited_plan(const PlanFacts& facts, const PlanReques
   Result<CertifiedPlan> best = make_leaner_plan(facts, request, execution);
   if (!best) return best;
   const MeshCapacity size = best->capacity();
-  if (size.triangles <= request.max_triangles && size.vertices <= max_vertices) return best;
+  if (size.triangles <= request.max_triangles && has_32_bit_indices(size)) return best;
   return too_many_in_all(facts.needs.options(), request, size);
 }
 

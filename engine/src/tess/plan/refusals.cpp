@@ -55,7 +55,7 @@ std::optional<double> nearest_tolerance(const PlanFacts& facts, std::uint64_t ma
       continue;
     }
     const Result<CertifiedPlan> found = make_plan(facts, {tolerance}, {});
-    if (found && found->capacity().triangles <= max_triangles && found->capacity().vertices <= max_vertices)
+    if (found && found->capacity().triangles <= max_triangles && has_32_bit_indices(found->capacity()))
       return tolerance;
   }
   return {};

@@ -76,8 +76,7 @@ Result<double> smallest_tolerance(const PlanFacts& facts, std::uint64_t max_tria
     if (!plan && plan.status().code() != StatusCode::invalid_argument) return plan.status();
     if (!plan || !plan->patches().rare->beyond.empty()) return Fit{};
     const MeshCapacity size = plan->capacity();
-    return Fit{size.triangles <= max_triangles && size.vertices <= max_vertices,
-               least_triangles(*plan) <= max_triangles};
+    return Fit{size.triangles <= max_triangles && has_32_bit_indices(size), least_triangles(*plan) <= max_triangles};
   };
   const int least = int(std::floor(steps_per_octave * std::log2(std::max(low, 1e-6 * high))));
   int best = int(std::ceil(steps_per_octave * std::log2(high)));

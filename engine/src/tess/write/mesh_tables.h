@@ -72,7 +72,9 @@ class MeshTables {
     friend bool operator==(const StripKey&, const StripKey&) = default;
   };
   struct Hash {
-    std::size_t operator()(std::uint64_t key) const { return (key ^ key >> 32) * 0x9e3779b97f4a7c15u >> 20; }
+    std::size_t operator()(std::uint64_t key) const {
+      return static_cast<std::size_t>((key ^ key >> 32) * 0x9e3779b97f4a7c15u >> 20);
+    }
     std::size_t operator()(const StripKey& key) const {
       return (*this)(key.border.key() * 3 + key.inner.key() + std::uint64_t{key.collapsed});
     }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/impl_access.h"
+#include "base/saturated.h"
 #include "base/text.h"
 #include "block/patch_set_impl.h"
 #include "eval/grid_checks.h"
@@ -72,13 +73,14 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin, const MeshArra
   Mesh mesh;
   mesh.origin = origin;
   const std::size_t vertices = capacity.vertices, triangles = capacity.triangles, quads = capacity.quads;
-  const ListSize sizes[] = {size_of(mesh.positions, 3 * vertices, 1),  // RayScene::make() needs room for one more
-                            size_of(mesh.normals, arrays.normals ? 3 * vertices : 0),
-                            size_of(mesh.parameters, arrays.parameters ? 2 * vertices : 0),
-                            size_of(mesh.model_positions, arrays.model_positions ? 3 * vertices : 0),
-                            size_of(mesh.indices, 3 * triangles),
+  const std::size_t coordinates = saturated_product(3, vertices);
+  const ListSize sizes[] = {size_of(mesh.positions, coordinates, 1),  // RayScene::make() needs room for one more
+                            size_of(mesh.normals, arrays.normals ? coordinates : 0),
+                            size_of(mesh.parameters, arrays.parameters ? saturated_product(2, vertices) : 0),
+                            size_of(mesh.model_positions, arrays.model_positions ? coordinates : 0),
+                            size_of(mesh.indices, saturated_product(3, triangles)),
                             size_of(mesh.patches, triangles),
-                            size_of(mesh.quads, 4 * quads),
+                            size_of(mesh.quads, saturated_product(4, quads)),
                             size_of(mesh.quad_patches, quads)};
   resize(sizes);
   return mesh;
