@@ -33,13 +33,22 @@
 #   OpenSubdiv        libosd-dev 3.5
 #   SISL              libsisl-dev 4.6             AGPL: linked by one program of its own, which links nothing of Tessera
 
-find_package(TBB 2021 REQUIRED)
-# Its version file takes no other major version for compatible.
-find_package(xsimd REQUIRED)
-if(xsimd_VERSION VERSION_LESS 8)
-  message(FATAL_ERROR "xsimd ${xsimd_VERSION} is found, in ${xsimd_DIR}; version 8 or later is needed")
+# What the core links for its loops.
+set(tessera_threads)
+if(TESSERA_USE_TBB)
+  find_package(TBB 2021 REQUIRED)
+  set(tessera_threads TBB::tbb)
+  find_package(Threads REQUIRED)
 endif()
-find_package(Threads REQUIRED)
+if(TESSERA_IS_WASM)
+  include(TesseraWasm)
+else()
+  # Its version file takes no other major version for compatible.
+  find_package(xsimd REQUIRED)
+  if(xsimd_VERSION VERSION_LESS 8)
+    message(FATAL_ERROR "xsimd ${xsimd_VERSION} is found, in ${xsimd_DIR}; version 8 or later is needed")
+  endif()
+endif()
 if(TESSERA_BUILD_RAY)
   if(NOT TESSERA_EMBREE_MAJOR MATCHES "^(|3|4)$")
     message(FATAL_ERROR "TESSERA_EMBREE_MAJOR is '${TESSERA_EMBREE_MAJOR}'; it must be 3, 4 or empty")
@@ -54,7 +63,9 @@ if(TESSERA_BUILD_RAY)
 endif()
 if(TESSERA_BUILD_IO)
   find_package(nlohmann_json 3 REQUIRED)
-  find_package(muparser 2 REQUIRED)
+  if(NOT TARGET muparser::muparser)  # built from its source for WebAssembly
+    find_package(muparser 2 REQUIRED)
+  endif()
 endif()
 # Whether tessera::io unpacks files of gzip, and what it links for that.
 set(TESSERA_HAS_ZLIB OFF)

@@ -1,15 +1,12 @@
 #include "base/aligned.h"
 
-#include <sys/mman.h>
+#include "base/large_pages.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
 void* allocate_aligned(std::size_t bytes) {
   void* const memory = ::operator new(bytes, alignment_of(bytes));
-#ifdef MADV_HUGEPAGE
-  if (alignment_of(bytes) == std::align_val_t{large_page})
-    (void)madvise(memory, bytes / large_page * large_page, MADV_HUGEPAGE);  // only a hint: failure is harmless
-#endif
+  if (alignment_of(bytes) == std::align_val_t{large_page}) want_large_pages(memory, bytes / large_page * large_page);
   return memory;
 }
 

@@ -1,10 +1,8 @@
 #include "c/calls.h"
 
-#include <pthread.h>
-
 #include <array>
-#include <mutex>
 
+#include "c/forks.h"
 #include "parallel/tbb_loop.h"
 #include "tessera/version.h"
 
@@ -20,22 +18,9 @@ LastError& last_error() {
   return error;
 }
 
-std::atomic<bool> is_forked = false;
-std::once_flag watching_forks;
-
-/// From the first work on, threads may exist that a child process lacks.
-void watch_forks() {
-  std::call_once(watching_forks, [] {
-    pthread_atfork(lock_handles, unlock_handles, [] {
-      unlock_handles();
-      is_forked = true;
-    });
-  });
-}
-
-constexpr std::array kind_names{"model",           "set",   "plan",     "scene",   "list of hits",
-                                "scene of points", "solid", "measures", "sections"};
-static_assert(kind_names.size() == static_cast<std::size_t>(Object::Kind::sections) + 1);
+constexpr std::array kind_names{"model",           "set",   "plan",     "scene",    "list of hits",
+                                "scene of points", "solid", "measures", "sections", "list of bytes"};
+static_assert(kind_names.size() == static_cast<std::size_t>(Object::Kind::bytes) + 1);
 const char* name_of(Object::Kind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
 
 constexpr std::array status_names{"ok",
@@ -107,8 +92,7 @@ CStatus run_work(const tsr_run* run, FunctionRef<CStatus(const Execution&)> work
   tsr_run options{};
   if (CStatus status = read_struct("tsr_run", run, options); status.code) return status;
   if (CStatus status = check_member("tsr_run", "threads", options.threads, TSR_MAX_THREADS); status.code) return status;
-  watch_forks();
-  if (is_forked)
+  if (is_forked())
     return {TSR_UNSUPPORTED,
             "this process was forked after Tessera had computed: its threads are the parent's; start "
             "the process anew (spawn, exec)"};

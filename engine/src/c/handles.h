@@ -12,7 +12,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// An object that a handle stands for.
 class Object {
  public:
-  enum class Kind : std::uint8_t { model, set, plan, scene, hits, point_scene, solid, measures, sections };
+  enum class Kind : std::uint8_t { model, set, plan, scene, hits, point_scene, solid, measures, sections, bytes };
   explicit Object(Kind kind) : kind_(kind) {}
   virtual ~Object() = default;
   Kind kind() const { return kind_; }

@@ -5,7 +5,6 @@
 
 #include "c/objects.h"
 #include "c/records.h"
-#include "tessera/limits.h"
 
 using namespace tessera;
 
@@ -238,18 +237,6 @@ tsr_status tsr_hits_read(const tsr_hits* hits, size_t* count, uint64_t* first, c
     tsr_hits_out to{};
     if (CStatus status = read_struct("tsr_hits_out", out, to); status.code) return status;
     return to.is_double ? write_hits<double>(of->lists.hits, to) : write_hits<float>(of->lists.hits, to);
-  });
-}
-
-tsr_status tsr_limits(size_t store_bytes, tsr_limits_info* info) {
-  return c_call([&]() -> CStatus {
-    LimitsOptions options;
-    if (store_bytes != 0) options.store_bytes = store_bytes;
-    const Result<Limits> measured = measure_limits(options);
-    if (!measured) return measured.status();
-    return write_struct("tsr_limits_info", info,
-                        {0, measured->float_operations_per_second, measured->double_operations_per_second,
-                         measured->store_bytes_per_second});
   });
 }
 

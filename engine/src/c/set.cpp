@@ -267,4 +267,16 @@ tsr_status tsr_set_grid_limit(const tsr_set* set, size_t count_u, size_t count_v
   });
 }
 
+tsr_status tsr_limits(size_t store_bytes, tsr_limits_info* info) {
+  return c_call([&]() -> CStatus {
+    LimitsOptions options;
+    if (store_bytes != 0) options.store_bytes = store_bytes;
+    const Result<Limits> measured = measure_limits(options);
+    if (!measured) return measured.status();
+    return write_struct("tsr_limits_info", info,
+                        {0, measured->float_operations_per_second, measured->double_operations_per_second,
+                         measured->store_bytes_per_second});
+  });
+}
+
 }  // extern "C"

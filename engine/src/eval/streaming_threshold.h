@@ -1,10 +1,10 @@
 #pragma once
 // The output size above which stores bypass the caches.
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
+
+#include "eval/cache_bytes.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
@@ -13,7 +13,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// MB a core, plain stores are 15% faster up to 28 MB, half as fast at 32 MB, and a sixth as fast at 200 MB.
 inline std::size_t streaming_threshold() {
   static const std::size_t bytes = [] {
-    const long own = sysconf(_SC_LEVEL2_CACHE_SIZE), shared = sysconf(_SC_LEVEL3_CACHE_SIZE);
+    const auto [own, shared] = cache_bytes();
     const std::size_t by_own = own > 0 ? static_cast<std::size_t>(own) * 8 : std::size_t{8} << 20;
     return shared > 0 ? std::min(by_own, static_cast<std::size_t>(shared) / 3) : by_own;
   }();

@@ -33,6 +33,9 @@ class CadInput {
  private:
   explicit CadInput(const std::filesystem::path& name) : name_(name.string()) {}
   Status unpack(std::string_view bytes);
+  Status no_bytes() const;
+  /// Whether a file that begins with these bytes is packed.
+  bool is_packed(std::string_view begin) const;
 
   std::string name_;
   bool is_file_ = false;    ///< whether the file itself is the content

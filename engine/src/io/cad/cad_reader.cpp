@@ -121,12 +121,6 @@ class Conversation {
 
 }  // namespace
 
-std::string listed_cad_extensions() {
-  std::string list;
-  for (const CadExtension& known : cad_extensions) list += ", " + std::string(known.extension);
-  return list;
-}
-
 std::string cad_reader_greeting() {
   std::string text = std::string(greeting_begin) + TESSERA_VERSION + ", models " + std::to_string(model_bytes_version);
   text.resize(greeting_size - 1, ' ');

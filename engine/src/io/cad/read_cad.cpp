@@ -98,6 +98,12 @@ CadFormat cad_format_of(const fs::path& path) {
   return CadFormat::by_extension;
 }
 
+std::string listed_cad_extensions() {
+  std::string list;
+  for (const CadExtension& known : cad_extensions) list += ", " + std::string(known.extension);
+  return list;
+}
+
 bool is_cad_file(const fs::path& path) { return cad_format_of(path) != CadFormat::by_extension; }
 
 Result<Model> read_cad(const fs::path& path, const CadOptions& options) {

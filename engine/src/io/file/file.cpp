@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <system_error>
 
 #include "base/text.h"
 #include "io/file/descriptor.h"
@@ -82,11 +81,6 @@ Result<std::string> read_whole(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-Status io_failure(const std::filesystem::path& path, std::string_view what, int error_number) {
-  return Status(StatusCode::io_error,
-                path.string() + ": " + std::string(what) + ": " + std::generic_category().message(error_number));
-}
 
 Result<std::string> read_file(const std::filesystem::path& path) {
   return guarded([&] { return read_whole(path); });

@@ -1,21 +1,12 @@
+#include "io/file/output_file.h"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <array>
 #include <cerrno>
-#include <climits>
-#include <cstdio>
 #include <cstring>
-#include <system_error>
+#include <new>
 #include <utility>
 
-#include "io/file/descriptor.h"
 #include "io/file/file.h"
-#include "io/file/output_file.h"
+#include "io/file/output_place.h"
 #include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -23,221 +14,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of a temporary, where a signal handler can read it: in memory that is never freed, without a lock.
-struct NamePlace {
-  std::atomic<bool> taken = false, readable = false;
-  std::array<char, PATH_MAX> name{};
-};
-// The one state of the process: a signal handler has no other way to the names.
-std::array<NamePlace, 8> name_places;
-
-/// The file's real place. Follows symbolic links, even dangling ones, so that they stay links.
-Result<fs::path> behind_links(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_symlink(path, error)) return path;
-  fs::path target = fs::canonical(path, error);
-  if (!error) return target;
-  // An object that exists under no path, such as the pipe behind /dev/stdout, is opened by the caller's path.
-  if (fs::exists(path, error)) return path;
-  constexpr int max_links = 40;  // the system's own limit (path_resolution(7))
-  target = path;
-  for (int link = 0; link < max_links; ++link) {
-    const fs::path next = fs::read_symlink(target, error);
-    if (error) return target;  // not a link
-    target = target.parent_path() / next;
-  }
-  return io_failure(path, "cannot be written", ELOOP);
-}
-
-/// The name of a file that is removed at the end, unless it is released; remove_temporaries knows it as long.
-class TemporaryName {
+/// The caller's string.
+class StringPlace final : public OutputPlace {
  public:
-  TemporaryName() = default;
-  explicit TemporaryName(fs::path path);
-  TemporaryName(TemporaryName&& other) noexcept
-      : path_(std::exchange(other.path_, fs::path())), place_(std::exchange(other.place_, no_place)) {}
-  TemporaryName& operator=(TemporaryName&&) = delete;
-  ~TemporaryName();
-
-  bool empty() const { return path_.empty(); }
-  const char* c_str() const { return path_.c_str(); }
-  void release();
-
- private:
-  static constexpr std::size_t no_place = ~std::size_t{0};
-  fs::path path_;
-  std::size_t place_ = no_place;  // among those that remove_temporaries sees
-};
-
-TemporaryName::TemporaryName(fs::path path) : path_(std::move(path)) {
-  const std::string& name = path_.native();
-  for (std::size_t k = 0; k < name_places.size() && name.size() < PATH_MAX; ++k) {
-    if (name_places[k].taken.exchange(true)) continue;
-    std::memcpy(name_places[k].name.data(), name.c_str(), name.size() + 1);
-    name_places[k].readable = true;
-    place_ = k;
-    return;
-  }
-}
-
-TemporaryName::~TemporaryName() {
-  if (!empty()) ::unlink(c_str());
-  release();
-}
-
-void TemporaryName::release() {
-  path_.clear();
-  if (place_ == no_place) return;
-  name_places[place_].readable = false;
-  name_places[place_].taken = false;
-  place_ = no_place;
-}
-
-bool is_same_file(int descriptor, const char* path) {
-  struct stat opened {
-  }, named{};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(path, &named) == 0 && opened.st_dev == named.st_dev &&
-         opened.st_ino == named.st_ino;
-}
-
-/// Removes a temporary that nobody holds locked: its writer was killed.
-bool remove_abandoned(const char* path) {
-  const Descriptor file(::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  return file.is_open() && ::flock(file.number(), LOCK_EX | LOCK_NB) == 0 && is_same_file(file.number(), path) &&
-         ::unlink(path) == 0;
-}
-
-/// A temporary beside its target.
-struct Temporary {
-  TemporaryName name;
-  Descriptor file;
-  int error = 0;  ///< errno of a failure
-};
-
-/// Holds signals back on this thread: a handler that calls remove_temporaries() comes before a file is created, or
-/// after its name is known. One that runs on another thread meanwhile leaves the file to the next writer.
-class HeldSignals {
- public:
-  HeldSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  HeldSignals(const HeldSignals&) = delete;
-  HeldSignals& operator=(const HeldSignals&) = delete;
-  ~HeldSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
-
-/// The path of a temporary: `target` with an ending. Where the folder takes no name that long, the end of the target's
-/// name is left out, and a hash of all of it tells such names apart (FNV-1a, Fowler, Noll, Vo 1991).
-fs::path temporary_path(const fs::path& target, std::size_t longest, int number) {
-  const std::string name = target.filename().string(), ending = ".tessera-" + std::to_string(number) + ".tmp";
-  if (name.size() + ending.size() <= longest) return target.parent_path() / (name + ending);
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  char digits[24];
-  const int length = std::snprintf(digits, sizeof digits, "~%016llx", static_cast<unsigned long long>(hash));
-  const std::string end = std::string(digits, static_cast<std::size_t>(length)) + ending;
-  return target.parent_path() / (name.substr(0, longest > end.size() ? longest - end.size() : 0) + end);
-}
-
-/// The most bytes that a name in the target's folder may have.
-std::size_t longest_name(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const long most = ::pathconf(folder.c_str(), _PC_NAME_MAX);
-  return most > 0 ? static_cast<std::size_t>(most) : NAME_MAX;
-}
-
-/// Creates `target`.tessera-0.tmp, or the next one that no living writer has, and locks it as long as it is open.
-Temporary open_temporary(const fs::path& target) {
-  constexpr int max_writers = 1000;  // of one target at once
-  const std::size_t longest = longest_name(target);
-  for (int number = 0, tries = 0; number < max_writers && tries < 2 * max_writers; ++tries) {
-    fs::path path = temporary_path(target, longest, number);
-    const HeldSignals held;
-    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.is_open()) {
-      // Another writer may have taken the file for abandoned before it was locked: then this name is not ours.
-      if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) continue;
-      if (!is_same_file(file.number(), path.c_str())) continue;
-      return {TemporaryName(std::move(path)), std::move(file), 0};
+  explicit StringPlace(std::string& bytes) : bytes_(bytes) { bytes_.clear(); }
+  std::ptrdiff_t take(std::string_view bytes) override {
+    try {
+      bytes_.append(bytes);
+    } catch (...) {
+      errno = ENOMEM;
+      return -1;
     }
-    if (errno != EEXIST) return {{}, {}, errno};
-    if (!remove_abandoned(path.c_str())) ++number;
+    return static_cast<std::ptrdiff_t>(bytes.size());
   }
-  return {{}, {}, EEXIST};
-}
+
+ private:
+  std::string& bytes_;
+};
 
 }  // namespace
 
-void remove_temporaries() noexcept {
-  for (const NamePlace& place : name_places) {
-    if (place.readable.load()) ::unlink(place.name.data());
-  }
-}
-
-/// Where the bytes go.
-class OutputFile::Destination {
- public:
-  explicit Destination(Descriptor to, TemporaryName name = {}) : file(std::move(to)), temporary(std::move(name)) {}
-
-  Descriptor file;
-  TemporaryName temporary;  ///< empty: written directly
-};
-
-OutputFile::OutputFile(std::unique_ptr<Destination> destination, fs::path target, const std::atomic<bool>* cancel)
-    : destination_(std::move(destination)), target_(std::move(target)), cancel_(cancel) {}
+OutputFile::OutputFile(std::unique_ptr<OutputPlace> place, fs::path target, const std::atomic<bool>* cancel)
+    : place_(std::move(place)), target_(std::move(target)), cancel_(cancel) {}
 OutputFile::OutputFile(OutputFile&&) noexcept = default;
 OutputFile::~OutputFile() = default;
 
-Result<OutputFile> OutputFile::make(const fs::path& path, const std::atomic<bool>* cancel) {
-  return guarded([&] { return open(path, cancel); });
+Result<OutputFile> OutputFile::opened(Result<OpenedPlace>&& from, const std::atomic<bool>* cancel) {
+  if (!from) return from.status();
+  return OutputFile(std::move(from->place), std::move(from->target), cancel);
 }
 
-Result<OutputFile> OutputFile::open(const fs::path& path, const std::atomic<bool>* cancel) {
-  const Result<fs::path> place = behind_links(path);
-  if (!place) return place.status();
-  const fs::path& target = *place;
-  struct stat facts {};
-  const bool exists = ::stat(target.c_str(), &facts) == 0;
-  if (exists && S_ISDIR(facts.st_mode)) {
-    return Status(StatusCode::io_error, path.string() + ": cannot be written: it is a directory");
-  }
-  if (exists && !S_ISREG(facts.st_mode)) {
-    Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-    if (!file.is_open()) return io_failure(path, "cannot be written", errno);
-    return OutputFile(std::make_unique<Destination>(std::move(file)), path, cancel);
-  }
-  // A rename would replace a file that its owner has write-protected.
-  if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-    return io_failure(path, "cannot be written", errno);
-  Temporary temporary = open_temporary(target);
-  if (!temporary.file.is_open()) {
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    if (temporary.error == ENOENT) {
-      return Status(StatusCode::io_error, path.string() + ": cannot be written: there is no folder " + folder.string());
-    }
-    return io_failure(path, "cannot be written in " + folder.string(), temporary.error);
-  }
-  if (exists) ::fchmod(temporary.file.number(), facts.st_mode & 07777);  // if it fails, the file has the usual mode
-  return OutputFile(std::make_unique<Destination>(std::move(temporary.file), std::move(temporary.name)), target,
-                    cancel);
+Result<OutputFile> OutputFile::make(const fs::path& path, const std::atomic<bool>* cancel) {
+  return guarded([&] { return opened(open_place(path), cancel); });
 }
 
 Result<OutputFile> OutputFile::standard_output(const std::atomic<bool>* cancel) {
-  return guarded([&]() -> Result<OutputFile> {
-    const fs::path name = "standard output";
-    Descriptor file(::dup(STDOUT_FILENO));
-    if (!file.is_open()) return io_failure(name, "cannot be written", errno);
-    return OutputFile(std::make_unique<Destination>(std::move(file)), name, cancel);
-  });
+  return guarded([&] { return opened(open_standard_output(), cancel); });
+}
+
+Result<OutputFile> OutputFile::memory(std::string& bytes, const fs::path& name, const std::atomic<bool>* cancel) {
+  return guarded([&] { return Result<OutputFile>(OutputFile(std::make_unique<StringPlace>(bytes), name, cancel)); });
 }
 
 void OutputFile::fail(int error_number) {
-  status_ = guarded([&] { return io_failure(target_, "cannot be written", error_number); });
+  status_ = guarded([&] {
+    if (error_number == ENOMEM) return Status(StatusCode::out_of_memory, target_.string() + ": out of memory");
+    return io_failure(target_, "cannot be written", error_number);
+  });
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -258,7 +81,7 @@ void OutputFile::flush() {
 void OutputFile::send(std::string_view bytes) {
   see_cancel();
   while (!bytes.empty() && status_.ok()) {
-    const ssize_t sent = ::write(destination_->file.number(), bytes.data(), bytes.size());
+    const std::ptrdiff_t sent = place_->take(bytes);
     if (sent < 0 && errno == EINTR) {
       see_cancel();
     } else if (sent < 0) {
@@ -274,23 +97,15 @@ void OutputFile::see_cancel() {
     status_ = guarded([] { return Status(StatusCode::cancelled, "cancelled by the caller"); });
 }
 
-fs::path OutputFile::temporary() const {
-  return !destination_ || destination_->temporary.empty() ? fs::path() : fs::path(destination_->temporary.c_str());
-}
+fs::path OutputFile::temporary() const { return place_ ? place_->temporary() : fs::path(); }
 
 Status OutputFile::commit() {
   flush();
   see_cancel();
-  const Descriptor lock(::dup(destination_->file.number()));  // until the file has its name
-  const int error = destination_->file.close();
+  const int error = place_->close();
   if (error != 0 && status_.ok()) fail(error);
-  if (status_.ok() && !destination_->temporary.empty()) {
-    if (::rename(destination_->temporary.c_str(), target_.c_str()) == 0) {
-      destination_->temporary.release();
-    } else {
-      fail(errno);
-    }
-  }
+  if (!status_.ok()) return std::move(status_);
+  if (const int unnamed = place_->publish(target_); unnamed != 0) fail(unnamed);
   return std::move(status_);
 }
 

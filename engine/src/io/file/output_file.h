@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,9 @@
 #include "tessera/status.h"
 
 namespace tessera { inline namespace abi_0_1 {
+
+class OutputPlace;
+struct OpenedPlace;
 
 /// Unlinks the temporaries of open OutputFiles, of at most eight at once. For signal handlers that end the process:
 /// async-signal-safe.
@@ -32,6 +36,10 @@ class OutputFile {
                                                          const std::atomic<bool>* cancel = nullptr);
   /// Writes to the process's standard output, directly. Errors: io_error (it is closed), out_of_memory.
   static Result<OutputFile> standard_output(const std::atomic<bool>* cancel = nullptr);
+  /// Writes to `bytes`, which is cleared, must outlive the object, and is complete after commit(). `name` stands for
+  /// the file in messages. Errors: out_of_memory.
+  static Result<OutputFile> memory(std::string& bytes, const std::filesystem::path& name,
+                                   const std::atomic<bool>* cancel = nullptr);
 
   TESSERA_INTERNAL_EXPORT OutputFile(OutputFile&&) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
@@ -66,9 +74,8 @@ class OutputFile {
   TESSERA_INTERNAL_EXPORT Status commit();
 
  private:
-  class Destination;
-  OutputFile(std::unique_ptr<Destination> destination, std::filesystem::path target, const std::atomic<bool>* cancel);
-  static Result<OutputFile> open(const std::filesystem::path& path, const std::atomic<bool>* cancel);
+  OutputFile(std::unique_ptr<OutputPlace> place, std::filesystem::path target, const std::atomic<bool>* cancel);
+  static Result<OutputFile> opened(Result<OpenedPlace>&& from, const std::atomic<bool>* cancel);
   char* room(std::size_t bytes) {
     if (buffer_bytes - used_ < bytes) flush();
     return buffer_.get() + used_;
@@ -78,7 +85,7 @@ class OutputFile {
   void fail(int error_number);
   void see_cancel();
 
-  std::unique_ptr<Destination> destination_;
+  std::unique_ptr<OutputPlace> place_;
   std::filesystem::path target_;
   const std::atomic<bool>* cancel_;
   static constexpr std::size_t buffer_bytes = std::size_t{1} << 16;  ///< small, for the many files of a batch

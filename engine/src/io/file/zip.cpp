@@ -6,17 +6,10 @@
 #include "base/text.h"
 #include "io/file/gzip.h"
 
-#ifdef TESSERA_HAS_ZLIB
 #define ZLIB_CONST  // its pointers point to const
 #include <zlib.h>
-#endif
 
 namespace tessera { inline namespace abi_0_1 {
-
-bool begins_as_zip(std::string_view bytes) { return bytes.starts_with("PK\3\4") || bytes.starts_with("PK\5\6"); }
-
-#ifdef TESSERA_HAS_ZLIB
-
 namespace {
 
 constexpr std::size_t end_size = 22, entry_size = 46, head_size = 30;  // of the records, without names and comments
@@ -99,15 +92,5 @@ class ZipArchive {
 Result<std::string> unpack_zip(std::string_view bytes, std::string_view name) {
   return ZipArchive(bytes, name).only_file();
 }
-
-#else
-
-Result<std::string> unpack_zip(std::string_view, std::string_view name) {
-  return Status(StatusCode::unsupported, std::string(name) +
-                                             ": packed files need a Tessera that was built with zlib (zlib1g-dev); "
-                                             "unpack the file first (unzip)");
-}
-
-#endif
 
 }}  // namespace tessera::abi_0_1

@@ -9,7 +9,7 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// Whether the bytes begin as a zip archive does.
-bool begins_as_zip(std::string_view bytes);
+inline bool begins_as_zip(std::string_view bytes) { return bytes.starts_with("PK\3\4") || bytes.starts_with("PK\5\6"); }
 
 /// Unpacks the only file of a zip archive (PKWARE, APPNOTE.TXT 6.3.10), stored or deflated; `name` stands for the
 /// archive in messages. Errors: parse_error (cut, damaged, no file inside), unsupported (several files, encrypted,
