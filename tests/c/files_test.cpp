@@ -1,4 +1,4 @@
-// Models of bytes in memory, and options of reading, through C.
+// Models of bytes in memory, options of reading, and files as bytes, through C.
 
 #include <filesystem>
 
@@ -109,6 +109,73 @@ TEST_F(CFiles, BadOptionsAreNamed) {
                  "model is a null pointer");
   expect_c_error(tsr_model_read_file(&made, nullptr, nullptr, nullptr), TSR_INVALID_ARGUMENT, "path is a null pointer");
   tsr_read_defaults(nullptr);
+}
+
+std::string bytes_of(const Handle<tsr_bytes>& bytes) {
+  std::size_t size = 0;
+  const void* const data = tsr_bytes_data(bytes.get(), &size);
+  return std::string(static_cast<const char*>(data), size);
+}
+
+TEST(CBytes, AreThoseOfTheFiles) {
+  const ScratchFolder folder;
+  const Handle<tsr_set> set = set_of(wavy_field(2, 2));
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-2);
+  MeshMemory memory(plan.get());
+  const tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  for (const std::string name : {"a.obj", "a.ply", "a.stl", "a.glb", "a.gltf"}) {
+    tsr_bytes* made = nullptr;
+    ASSERT_C(tsr_mesh_bytes(&made, &mesh, set.get(), name.c_str())) << name;
+    const Handle<tsr_bytes> bytes(made);
+    ASSERT_C(tsr_mesh_save(&mesh, set.get(), (folder / name).c_str())) << name;
+    EXPECT_TRUE(bytes_of(bytes) == content_of(folder / name)) << name;
+    EXPECT_EQ(tsr_bytes_data(bytes.get(), nullptr), tsr_bytes_data(bytes.get(), nullptr));
+  }
+}
+
+TEST(CBytes, OfModelsAndOfTheirShapes) {
+  const ScratchFolder folder;
+  const Handle<tsr_model> model = model_of(wavy_field(1, 2));
+  for (const std::string name : {"m.json", "m.obj", "m.bpt"}) {
+    tsr_bytes* made = nullptr;
+    ASSERT_C(tsr_model_bytes(&made, model.get(), name.c_str())) << name;
+    ASSERT_C(tsr_model_save(model.get(), (folder / name).c_str())) << name;
+    EXPECT_TRUE(bytes_of(Handle<tsr_bytes>(made)) == content_of(folder / name)) << name;
+  }
+  tsr_model* joined_model = nullptr;
+  ASSERT_C(tsr_model_join(&joined_model, model.get(), 0));
+  const Handle<tsr_model> joined(joined_model);
+  const Handle<tsr_set> set = set_of(joined.get(), 0, 0);
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-2);
+  MeshMemory memory(plan.get());
+  const tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  const tsr_mesh* const meshes[] = {&mesh};
+  const tsr_set* const sets[] = {set.get()};
+  tsr_bytes* made = nullptr;
+  ASSERT_C(tsr_model_mesh_bytes(&made, joined.get(), meshes, sets, 1, "two.glb"));
+  const Handle<tsr_bytes> bytes(made);
+  ASSERT_C(tsr_model_save_meshes(joined.get(), meshes, sets, 1, (folder / "two.glb").c_str()));
+  EXPECT_TRUE(bytes_of(bytes) == content_of(folder / "two.glb"));
+  expect_c_error(tsr_model_mesh_bytes(&made, joined.get(), meshes, sets, 2, "two.glb"), TSR_COUNT_MISMATCH, "1 shapes");
+  EXPECT_EQ(made, nullptr);
+}
+
+TEST(CBytes, ErrorsNameTheFile) {
+  const Handle<tsr_model> model = model_of(wavy_field(1, 1));
+  const Handle<tsr_set> set = set_of(model.get());
+  tsr_bytes* made = nullptr;
+  tsr_mesh none = sized<tsr_mesh>();
+  expect_c_error(tsr_mesh_bytes(&made, &none, nullptr, "a.xyz"), TSR_UNSUPPORTED, "a.xyz: unsupported format");
+  expect_c_error(tsr_mesh_bytes(&made, &none, nullptr, "a.ply"), TSR_INVALID_ARGUMENT, "a.ply: ");
+  expect_c_error(tsr_mesh_bytes(&made, &none, nullptr, nullptr), TSR_INVALID_ARGUMENT, "name is a null");
+  expect_c_error(tsr_mesh_bytes(nullptr, &none, nullptr, "a.ply"), TSR_INVALID_ARGUMENT, "bytes is a null");
+  expect_c_error(tsr_model_bytes(&made, model.get(), "a.ply"), TSR_UNSUPPORTED, "a.ply: unsupported format");
+  expect_c_error(tsr_model_bytes(&made, nullptr, "a.bpt"), TSR_INVALID_HANDLE, "is null");
+  std::size_t size = 7;
+  EXPECT_EQ(tsr_bytes_data(reinterpret_cast<const tsr_bytes*>(model.get()), &size), nullptr);
+  EXPECT_EQ(size, 0u);
 }
 
 }}  // namespace tessera::test

@@ -48,6 +48,17 @@ TEST_P(MeshFiles, EveryBitComesBack) {
   EXPECT_EQ(folder_.names().size(), 1u);
 }
 
+TEST_P(MeshFiles, BytesInMemoryAreThoseOfTheFile) {
+  const Mesh mesh = random_mesh(500, 8000, {true, true, false});
+  ASSERT_TRUE(write_mesh(mesh, path()).ok());
+  const Result<std::string> bytes = mesh_bytes(mesh, path());
+  ASSERT_TRUE(bytes.ok()) << bytes.status().message();
+  EXPECT_TRUE(*bytes == test::content_of(path()));
+  EXPECT_EQ(mesh_bytes(mesh, "m.xyz").status().code(), StatusCode::unsupported);
+  EXPECT_EQ(mesh_bytes({}, path()).status().code(), StatusCode::invalid_argument);
+  EXPECT_EQ(folder_.names().size(), 1u);
+}
+
 TEST_P(MeshFiles, PositionsInDoubleAreWritten) {
   Mesh mesh = random_mesh(50, 80, {true, true, false});
   for (std::size_t k = 0; k < mesh.positions.size(); ++k) mesh.model_positions.push_back(1e6 + mesh.positions[k] / 3.0);

@@ -118,6 +118,10 @@ struct WrittenModel {
 /// Errors: io_error, unsupported (the extension; a rational surface for .bpt, index = the surface), invalid_argument
 /// (no surfaces), those of to_bezier().
 Result<WrittenModel> write_model(const Model& model, const std::filesystem::path& path, const FitOptions& fit = {});
+/// Writes what write_model() writes to `bytes`, which it replaces. `name`: its extension states the format, and it
+/// stands for the file in messages. Errors: as write_model(), but for io_error; `bytes` is then undefined.
+Result<WrittenModel> write_model_bytes(const Model& model, const std::filesystem::path& name, std::string& bytes,
+                                       const FitOptions& fit = {});
 
 /// The axis of a model that points up: z in CAD, y in glTF and in many programs that draw.
 enum class UpAxis : std::uint8_t { z, y };
@@ -156,6 +160,12 @@ struct MeshWriteOptions {
 /// count_mismatch, non_finite.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const MeshWriteOptions& options = {});
 
+/// Returns the bytes of the file that write_mesh() writes. `name`: its extension states the format, and it stands for
+/// the file in messages. Errors: as write_mesh(), but for io_error. Memory: the result, and at most as much again while
+/// it grows.
+Result<std::string> mesh_bytes(const Mesh& mesh, const std::filesystem::path& name,
+                               const MeshWriteOptions& options = {});
+
 /// Returns a bound of the distance between a vertex of the mesh (in double, if it has positions in double) and that of
 /// the file that write_mesh() makes of it: the mesh of the file keeps Tessellation::bound() plus this. It is 0 for
 /// glTF, whose positions are relative to the origin, if they are in float. 2^-24 of the largest coordinate comes from
@@ -180,6 +190,10 @@ double file_rounding(const std::filesystem::path& path, const Vec3& origin, cons
 /// (glTF in any other unit).
 Status write_assembly(const MeshAssembly& assembly, const std::filesystem::path& path,
                       const MeshWriteOptions& options = {});
+/// Returns the bytes of the file that write_assembly() writes. `name` and memory: as mesh_bytes(). Errors: as
+/// write_assembly(), but for io_error.
+Result<std::string> assembly_bytes(const MeshAssembly& assembly, const std::filesystem::path& name,
+                                   const MeshWriteOptions& options = {});
 
 /// How read_mesh() treats polygons, and where it reports what it skips.
 struct MeshReadOptions {

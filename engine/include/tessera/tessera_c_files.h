@@ -1,6 +1,6 @@
 #ifndef TESSERA_TESSERA_C_FILES_H
 #define TESSERA_TESSERA_C_FILES_H
-/* Tessera for C: models of files in memory, and options of reading.
+/* Tessera for C: files in memory, of models and of meshes, and options of reading.
  *
  *   tsr_model* model = NULL;
  *   tsr_read_options options;
@@ -39,6 +39,19 @@ tsr_status tsr_model_read_file(tsr_model** model, const char* path, const tsr_re
  * format if the options leave it open; NULL: "bytes". Errors: as tsr_model_read_file(). */
 tsr_status tsr_model_read_bytes(tsr_model** model, const void* bytes, size_t size, const char* name,
                                 const tsr_read_options* options, const tsr_run* run);
+
+/* The bytes of a file that never was. They stay where they are until the handle is released. */
+typedef struct tsr_bytes tsr_bytes;
+/* Returns the first byte, NULL for a handle of no bytes. *size, unless `size` is NULL: how many there are. */
+const void* tsr_bytes_data(const tsr_bytes* bytes, size_t* size);
+
+/* Make the bytes of the file that tsr_mesh_save(), tsr_model_save_meshes() or tsr_model_save() writes. `name`: its
+ * extension states the format, and it stands for the file in messages. Errors: as these functions, but for
+ * TSR_IO_ERROR. */
+tsr_status tsr_mesh_bytes(tsr_bytes** bytes, const tsr_mesh* mesh, const tsr_set* set, const char* name);
+tsr_status tsr_model_mesh_bytes(tsr_bytes** bytes, const tsr_model* model, const tsr_mesh* const* meshes,
+                                const tsr_set* const* sets, size_t count, const char* name);
+tsr_status tsr_model_bytes(tsr_bytes** bytes, const tsr_model* model, const char* name);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
-// Models of files and of bytes, with options, of the C interface.
+// Models of files and of bytes, with options, and files as bytes, of the C interface.
 
-#include "c/objects.h"
+#include "c/mesh.h"
 #include "tessera/io.h"
 #include "tessera/tessera_c_files.h"
 
@@ -29,6 +29,21 @@ CStatus give_read(tsr_model** out, const tsr_read_options* options, const tsr_ru
     ModelReadOptions wanted;
     if (CStatus status = wanted_options(options, execution, wanted); status.code) return status;
     return give_model(out, read(wanted));
+  });
+}
+
+CStatus give_bytes(tsr_bytes** out, Result<std::string>&& bytes) {
+  if (!bytes) return bytes.status();
+  return give(out, std::make_shared<CBytes>(*std::move(bytes)));
+}
+
+/// Calls make(), which gives the bytes, if there is a place for them and a name.
+template <class Make>
+tsr_status make_bytes(tsr_bytes** bytes, const char* name, const Make& make) {
+  if (bytes) *bytes = nullptr;
+  return c_call([&]() -> CStatus {
+    if (!bytes || !name) return null_pointer(bytes ? "name" : "bytes");
+    return make();
   });
 }
 
@@ -61,6 +76,42 @@ tsr_status tsr_model_read_bytes(tsr_model** model, const void* bytes, size_t siz
     return give_read(model, options, run, [&](const ModelReadOptions& wanted) {
       return parse_model(content, name ? name : "bytes", wanted);
     });
+  });
+}
+
+const void* tsr_bytes_data(const tsr_bytes* bytes, size_t* size) {
+  const Held<CBytes> of(bytes);
+  if (size) *size = of ? of->bytes.size() : 0;
+  return of ? of->bytes.data() : nullptr;
+}
+
+tsr_status tsr_mesh_bytes(tsr_bytes** bytes, const tsr_mesh* mesh, const tsr_set* set, const char* name) {
+  return make_bytes(bytes, name, [&]() -> CStatus {
+    Mesh copy;
+    if (CStatus status = named_copy(mesh, set, copy); status.code) return status;
+    return give_bytes(bytes, mesh_bytes(copy, name));
+  });
+}
+
+tsr_status tsr_model_mesh_bytes(tsr_bytes** bytes, const tsr_model* model, const tsr_mesh* const* meshes,
+                                const tsr_set* const* sets, size_t count, const char* name) {
+  return make_bytes(bytes, name, [&]() -> CStatus {
+    const Held<CModel> of(model);
+    if (!of) return of.error();
+    if (!meshes || !sets) return null_pointer(meshes ? "sets" : "meshes");
+    MeshAssembly assembly;
+    if (CStatus status = assembly_of(of->model, meshes, sets, count, assembly); status.code) return status;
+    return give_bytes(bytes, assembly_bytes(assembly, name));
+  });
+}
+
+tsr_status tsr_model_bytes(tsr_bytes** bytes, const tsr_model* model, const char* name) {
+  return make_bytes(bytes, name, [&]() -> CStatus {
+    const Held<CModel> of(model);
+    if (!of) return of.error();
+    std::string written;
+    const Result<WrittenModel> facts = write_model_bytes(of->model, name, written);
+    return facts ? give_bytes(bytes, std::move(written)) : CStatus(facts.status());
   });
 }
 

@@ -42,7 +42,8 @@ CStatus placed_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
   return {};
 }
 
-/// Copies a mesh, with the origin and the parts of its set.
+}  // namespace
+
 CStatus named_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
   if (CStatus status = placed_copy(mesh, set, copy); status.code) return status;
   if (!set || !copy.has_patches()) return {};
@@ -56,8 +57,8 @@ CStatus named_copy(const tsr_mesh* mesh, const tsr_set* set, Mesh& copy) {
   return {};
 }
 
-CStatus save_meshes(const Model& model, const tsr_mesh* const* meshes, const tsr_set* const* sets, std::size_t count,
-                    const char* path) {
+CStatus assembly_of(const Model& model, const tsr_mesh* const* meshes, const tsr_set* const* sets, std::size_t count,
+                    MeshAssembly& made) {
   if (model.shapes.empty()) return bad("the model has no shapes: save its mesh by tsr_mesh_save()");
   if (count != model.shapes.size())
     return {TSR_COUNT_MISMATCH, "the model has " + std::to_string(model.shapes.size()) + " shapes, found " +
@@ -71,10 +72,9 @@ CStatus save_meshes(const Model& model, const tsr_mesh* const* meshes, const tsr
       return status;
     }
   }
-  return write_assembly(*assembly, path);
+  made = *std::move(assembly);
+  return {};
 }
-
-}  // namespace
 
 CStatus mesh_views(const tsr_mesh* mesh, tsr_mesh& read, MeshViews& views) {
   if (!mesh) return null_pointer("mesh");
@@ -159,7 +159,9 @@ tsr_status tsr_model_save_meshes(const tsr_model* model, const tsr_mesh* const* 
     const Held<CModel> of(model);
     if (!of) return of.error();
     if (!meshes || !sets || !path) return null_pointer(!meshes ? "meshes" : !sets ? "sets" : "path");
-    return save_meshes(of->model, meshes, sets, count, path);
+    MeshAssembly assembly;
+    if (CStatus status = assembly_of(of->model, meshes, sets, count, assembly); status.code) return status;
+    return write_assembly(assembly, path);
   });
 }
 

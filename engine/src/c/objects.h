@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "c/calls.h"
@@ -130,6 +131,13 @@ struct CSections : Object {
   static constexpr Kind of_kind = Kind::sections;
   explicit CSections(Sections of) : Object(of_kind), sections(std::move(of)) {}
   Sections sections;
+};
+
+/// The bytes of a file never change.
+struct CBytes : Object {
+  static constexpr Kind of_kind = Kind::bytes;
+  explicit CBytes(std::string of) : Object(of_kind), bytes(std::move(of)) {}
+  std::string bytes;
 };
 
 /// An object that was made of a set, and the set, which the call reads both.

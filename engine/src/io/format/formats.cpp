@@ -114,16 +114,30 @@ Status in_output(const fs::path& path, const Status& status) {
   return status.ok() ? status : Status(status.code(), path.string() + ": " + status.message(), status.index());
 }
 
-/// Makes the file, which `write` fills, and commits it.
-template <class Write>
-Status write_file(const fs::path& path, const Write& write) {
+/// Makes the file by `open`, fills it by `write` and commits it.
+template <class Open, class Write>
+Status write_opened(const fs::path& path, const Open& open, const Write& write) {
   return guarded([&]() -> Status {
     if (const Status status = check_mesh_format(path); !status.ok()) return status;
-    Result<OutputFile> out = OutputFile::make(path);
+    Result<OutputFile> out = open();
     if (!out) return out.status();
     const Status status = write(*out);
     return status.ok() ? out->commit() : status;
   });
+}
+template <class Write>
+Status write_file(const fs::path& path, const Write& write) {
+  return write_opened(
+      path, [&] { return OutputFile::make(path); }, write);
+}
+/// The bytes of the file that `write` fills.
+template <class Write>
+Result<std::string> written_bytes(const fs::path& name, const Write& write) {
+  std::string bytes;
+  const Status status = write_opened(
+      name, [&] { return OutputFile::memory(bytes, name); }, write);
+  if (!status.ok()) return status;
+  return bytes;
 }
 
 }  // namespace
@@ -196,6 +210,14 @@ Status write_mesh(const Mesh& mesh, const fs::path& path, const MeshWriteOptions
 }
 Status write_assembly(const MeshAssembly& assembly, const fs::path& path, const MeshWriteOptions& options) {
   return write_file(path, [&](OutputFile& out) { return write_assembly(assembly, path, out, options); });
+}
+
+Result<std::string> mesh_bytes(const Mesh& mesh, const fs::path& name, const MeshWriteOptions& options) {
+  return written_bytes(name, [&](OutputFile& out) { return write_mesh(mesh, name, out, options); });
+}
+Result<std::string> assembly_bytes(const MeshAssembly& assembly, const fs::path& name,
+                                   const MeshWriteOptions& options) {
+  return written_bytes(name, [&](OutputFile& out) { return write_assembly(assembly, name, out, options); });
 }
 
 }}  // namespace tessera::abi_0_1

@@ -55,6 +55,20 @@ Result<WrittenModel> write(const Model& model, const fs::path& path, const FitOp
   return facts;
 }
 
+/// Writes to the file that `open` makes, and commits it.
+template <class Open>
+Result<WrittenModel> write_model_to(const Model& model, const fs::path& path, const FitOptions& fit, const Open& open) {
+  return guarded([&]() -> Result<WrittenModel> {
+    if (Status status = check_model_format(path); !status.ok()) return status;
+    Result<OutputFile> out = open();
+    if (!out) return out.status();
+    Result<WrittenModel> facts = write(model, path, fit, *out);
+    if (!facts) return facts;
+    if (Status status = out->commit(); !status.ok()) return status;
+    return facts;
+  });
+}
+
 }  // namespace
 
 std::string trims_left_out(std::size_t surface, const WrittenSurface& written, std::string_view why) {
@@ -68,15 +82,12 @@ Result<WrittenModel> write_model(const Model& model, const fs::path& path, const
 }
 
 Result<WrittenModel> write_model(const Model& model, const fs::path& path, const FitOptions& fit) {
-  return guarded([&]() -> Result<WrittenModel> {
-    if (Status status = check_model_format(path); !status.ok()) return status;
-    Result<OutputFile> out = OutputFile::make(path);
-    if (!out) return out.status();
-    Result<WrittenModel> facts = write(model, path, fit, *out);
-    if (!facts) return facts;
-    if (Status status = out->commit(); !status.ok()) return status;
-    return facts;
-  });
+  return write_model_to(model, path, fit, [&] { return OutputFile::make(path); });
+}
+
+Result<WrittenModel> write_model_bytes(const Model& model, const fs::path& name, std::string& bytes,
+                                       const FitOptions& fit) {
+  return write_model_to(model, name, fit, [&] { return OutputFile::memory(bytes, name); });
 }
 
 }}  // namespace tessera::abi_0_1
