@@ -42,7 +42,11 @@ macro(tessera_isa name units)
   list(APPEND tessera_isa_objects $<TARGET_OBJECTS:tessera_kernel_${name}>)
 endmacro()
 
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "wasm32")  # -O3 makes the module larger and no faster
+  list(TRANSFORM kernel_flags REPLACE "^-O3$" -O2)
+  set(tessera_machine ${kernel_folder}/table/machine_wasm32.cpp)
+  tessera_isa(wasm128 "${kernel_units}" -msimd128)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   set(tessera_machine ${kernel_folder}/table/machine_aarch64.cpp)
   tessera_isa(neon64 "${kernel_units}")
 else()

@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/setup.sh [--for demo|cad|mpi|python|package|test|neon|fuzz|peers|gallery|docs]
+tools/setup.sh [--for demo|cad|mpi|python|package|test|neon|wasm|fuzz|peers|gallery|docs]
 
 Lists and installs the missing Debian packages that Tessera is built with, by apt-get, with sudo unless it runs as root.
 If nothing is missing, it does nothing and needs neither network nor rights.
@@ -17,6 +17,8 @@ If nothing is missing, it does nothing and needs neither network nor rights.
   --for test      what the package for Python needs, and the tests (the default)
   --for neon      these, and the test of the NEON kernels: 300 MB of a cross compiler and an emulator; without them that
                   test is skipped
+  --for wasm      the tests, and what builds and runs tessera.wasm: 280 MB of a compiler with its libraries for WebAssembly,
+                  Node, and the source of muParser, which goes to build/sources; without them that test is skipped
   --for fuzz      the tests, and clang with libFuzzer for tools/test.sh --fuzz
   --for peers     the demo, and the programs that Tessera is compared with
   --for gallery   the demo, and the programs that put pictures on a sheet
@@ -39,6 +41,8 @@ package_packages=("${python_packages[@]}" dpkg-dev file)
 test_packages=("${python_packages[@]}" "${mpi_packages[@]}" abigail-tools binutils libgtest-dev libgmock-dev libbenchmark-dev libassimp-dev libtinygltf-dev mypy
   python3 python3-pytest python3-yaml universal-ctags valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
+wasm_packages=(clang-19 lld-19 libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc
+  libfast-float-dev nodejs dpkg-dev)
 fuzz_packages=(clang-19 libclang-rt-19-dev)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)
@@ -49,7 +53,7 @@ purpose='test'
 while (($#)); do
   case $1 in
     --for)
-      (($# >= 2)) || fail "--for wants a word after it: demo, cad, mpi, python, package, test, neon, fuzz, peers, gallery or docs"
+      (($# >= 2)) || fail "--for wants a word after it: demo, cad, mpi, python, package, test, neon, wasm, fuzz, peers, gallery or docs"
       purpose=$2
       shift 2
       ;;
@@ -72,11 +76,12 @@ case $purpose in
   package) packages=("${demo_packages[@]}" "${package_packages[@]}") ;;
   test) packages=("${demo_packages[@]}" "${test_packages[@]}") ;;
   neon) packages=("${demo_packages[@]}" "${test_packages[@]}" "${neon_packages[@]}") ;;
+  wasm) packages=("${demo_packages[@]}" "${test_packages[@]}" "${wasm_packages[@]}") ;;
   fuzz) packages=("${demo_packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}") ;;
   peers) packages=("${demo_packages[@]}" "${peer_packages[@]}") ;;
   gallery) packages=("${demo_packages[@]}" "${gallery_packages[@]}") ;;
   docs) packages=("${demo_packages[@]}" "${docs_packages[@]}") ;;
-  *) fail "--for $purpose: no such purpose; there are demo, cad, mpi, python, package, test, neon, fuzz, peers, gallery and docs" ;;
+  *) fail "--for $purpose: no such purpose; there are demo, cad, mpi, python, package, test, neon, wasm, fuzz, peers, gallery and docs" ;;
 esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
@@ -88,11 +93,19 @@ is_installed() {
   [[ $(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]
 }
 
+# The source of muParser, of which Debian has no library for WebAssembly.
+tools=${BASH_SOURCE[0]%/*}
+[[ $tools != "${BASH_SOURCE[0]}" ]] || tools=.
+sources=$tools/../build/sources
+lacks_source() {
+  [[ $purpose == wasm && ! -e $sources/muparser/src/muParserBase.cpp ]]
+}
+
 missing=()
 for package in "${packages[@]}"; do
   is_installed "$package" || missing+=("$package")
 done
-if ((${#missing[@]} == 0)); then
+if ((${#missing[@]} == 0)) && ! lacks_source; then
   echo "setup: nothing is missing"
   exit 0
 fi
@@ -113,6 +126,32 @@ apt() {
   "${as_root[@]}" apt-get -q -y -o DPkg::Lock::Timeout=300 "$@"
 }
 
+# Unpacks the source of muParser from where this machine has its packages from, with lists of its own.
+get_source() {
+  local scratch
+  scratch=$(mktemp -d)
+  mkdir -p "$scratch/lists/partial" "$scratch/cache/archives/partial"
+  local options=(-q -o Dir::Etc::SourceList="$scratch/sources.list" -o Dir::Etc::SourceParts=/dev/null
+    -o Dir::State::Lists="$scratch/lists" -o Dir::Cache="$scratch/cache" -o APT::Sandbox::User="$(id -un)")
+  {
+    apt-get indextargets --format 'deb-src $(SITE) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
+      sort -u >"$scratch/sources.list"
+    (cd "$scratch" && apt-get "${options[@]}" update && apt-get "${options[@]}" source muparser)
+  } || {
+    rm -rf "$scratch"
+    fail "apt-get could not get the source of muparser: what it says above is why (no network, perhaps?)"
+  }
+  mkdir -p "$sources"
+  rm -rf "$sources/muparser"
+  mv "$scratch"/muparser-*/ "$sources/muparser"
+  rm -rf "$scratch"
+  echo "setup: unpacked the source of muParser in build/sources"
+}
+
+if ((${#missing[@]} == 0)); then
+  get_source
+  exit 0
+fi
 echo "setup: installs ${missing[*]}"
 # apt-get installs nothing while an earlier installation is half done.
 "${as_root[@]}" dpkg --configure -a || echo "setup: dpkg --configure -a failed; trying all the same" >&2
@@ -131,3 +170,6 @@ done
 ((${#lacking[@]} == 0)) ||
   fail "apt-get could not install ${lacking[*]}: what it says above is why (no network, perhaps?)"
 echo "setup: installed ${missing[*]}"
+if lacks_source; then
+  get_source
+fi

@@ -147,6 +147,10 @@ TEST(Engine, EveryIncludeStaysOnOrBelowItsFloor) {
   std::size_t checked = 0;
   for (const std::string& path : known) {
     if (path == front_door || !(path.ends_with(".h") || path.ends_with(".cpp"))) continue;
+    if (path.starts_with("wasm32/")) {  // stands below all floors, as the C++ library does
+      EXPECT_TRUE(quoted_includes(read_text("engine/" + path)).empty()) << path;
+      continue;
+    }
     ++checked;
     for (const std::string& fault : check_includes({path, read_text("engine/" + path)}, table, known)) {
       ADD_FAILURE() << "engine/" << fault;

@@ -7,11 +7,12 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<IsaUnit, 4> isa_units{{
+constexpr std::array<IsaUnit, 5> isa_units{{
     {"sse2", "sse2"},
     {"avx2", "avx|avx2|fma3|fma5"},
     {"avx512", "avx512[a-z]*"},
     {"neon64", "neon64"},
+    {"wasm128", "wasm128"},
 }};
 
 // Functions that the linker sees: global and weak ones, and indirect ones. Data holds no instructions.

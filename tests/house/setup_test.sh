@@ -90,6 +90,25 @@ touch "$place/interrupted"  # an earlier installation was cut off
 attempt "$place/bin" --for neon
 expect 0 "installed qemu-user"
 
+# The source of muParser lies in the checkout, or is fetched.
+mkdir -p "$place/checkout/tools" "$place/checkout/build/sources/muparser/src"
+cp "$setup" "$place/checkout/tools/setup.sh"
+touch "$place/checkout/build/sources/muparser/src/muParserBase.cpp"
+checked_in=$setup
+setup=$place/checkout/tools/setup.sh
+printf 'lld-19\nqemu-user\n' >"$place/missing"
+attempt "$place/bin" --for wasm
+expect 0 "installed lld-19"
+attempt "$place/bin" --for wasm
+expect 0 "nothing is missing"
+rm -r "$place/checkout/build"
+for program in id mkdir mktemp mv sort; do ln -s "$(command -v "$program")" "$place/bin/$program"; done
+touch "$place/no_network"
+attempt "$place/bin" --for wasm
+expect 1 "could not get the source of muparser"
+rm "$place/no_network"
+setup=$checked_in
+
 printf 'imagemagick\nlibgtest-dev\n' >"$place/missing"
 attempt "$place/bin" --for gallery
 expect 0 "installed imagemagick"

@@ -14,9 +14,10 @@
 namespace tessera { inline namespace abi_0_1 {
 
 /// An instruction set that kernels are compiled for.
-enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64 };
+enum class Isa : std::uint8_t { sse2, avx2, avx512, neon64, wasm128 };
 
-std::string_view name(Isa isa);  ///< "sse2", "avx2" (with FMA), "avx512" (F, CD, DQ, BW, VL), "neon64" (AArch64)
+/// Returns "sse2", "avx2" (with FMA), "avx512" (F, CD, DQ, BW, VL), "neon64" (AArch64) or "wasm128" (WebAssembly).
+std::string_view name(Isa isa);
 
 /// Returns the instruction sets that the library has and that processor and operating system support, slowest first.
 std::span<const Isa> available_isas();

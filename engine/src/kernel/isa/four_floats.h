@@ -4,7 +4,9 @@
 
 #include "kernel/isa/lanes.h"
 
-#if defined(__aarch64__)
+#if defined(__wasm_simd128__)
+#include "kernel/isa/four_floats_wasm128.h"
+#elif defined(__aarch64__)
 #include "kernel/isa/four_floats_neon64.h"
 #else
 #include "kernel/isa/four_floats_x86.h"

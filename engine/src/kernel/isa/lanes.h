@@ -7,6 +7,8 @@
 #include "kernel/isa/lanes_avx512.h"
 #elif defined(__AVX2__)
 #include "kernel/isa/lanes_avx2.h"
+#elif defined(__wasm_simd128__)
+#include "kernel/isa/lanes_wasm128.h"
 #elif defined(__aarch64__)
 #include "kernel/isa/lanes_neon64.h"
 #else

@@ -11,7 +11,7 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr std::array<Isa, 4> all_isas{Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon64};
+constexpr std::array<Isa, 5> all_isas{Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon64, Isa::wasm128};
 
 struct Available {
   std::array<Isa, all_isas.size()> isas{};
@@ -55,6 +55,8 @@ std::string_view name(Isa isa) {
       return "avx512";
     case Isa::neon64:
       return "neon64";
+    case Isa::wasm128:
+      return "wasm128";
   }
   return "unknown";
 }
@@ -94,7 +96,7 @@ const KernelTable& kernels(Isa isa) {
 
 const KernelTable& default_kernels() {
   const Result<Isa> isa = default_isa();
-  return kernels(isa ? *isa : Isa::sse2);
+  return isa ? kernels(*isa) : *machine_kernels().front();
 }
 
 }  // namespace kernel
