@@ -82,7 +82,7 @@ endif()
 # Whether tessera::io packs and unpacks glTF, and what it links for that.
 set(TESSERA_HAS_MESHOPT OFF)
 set(tessera_meshopt)
-if(TESSERA_BUILD_IO)
+if(TESSERA_BUILD_IO AND NOT TESSERA_IS_WASM)
   find_package(meshoptimizer QUIET)
   if(meshoptimizer_FOUND)
     set(TESSERA_HAS_MESHOPT ON)

@@ -1,22 +1,16 @@
 #include "parallel/long_lists.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <new>
 #include <vector>
 
 #include "parallel/parallel_for.h"
+#include "parallel/system_pages.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-#ifdef MADV_POPULATE_WRITE
-constexpr int populate = MADV_POPULATE_WRITE;  // since Linux 5.14; elsewhere pages come when they are written
-#else
-constexpr int populate = 23;
-#endif
 constexpr std::size_t page = 4096, piece_bytes = std::size_t{1} << 22;
 
 /// The whole pages of a list, cut in pieces.
@@ -42,7 +36,7 @@ void resize(std::span<const ListSize> lists) {
   std::vector<std::span<std::byte>> pieces;
   for (const ListSize& list : lists) add_pieces(list.memory, pieces);
   Status status = parallel_for(pieces.size(), 1, {}, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) ::madvise(pieces[k].data(), pieces[k].size(), populate);
+    for (std::size_t k = begin; k < end; ++k) fetch_pages(pieces[k]);
   });
   if (status.ok())
     status = parallel_for(lists.size(), 1, {}, [&](std::size_t begin, std::size_t end) {
