@@ -1,7 +1,7 @@
 # Where each dependency comes from. All are packages of Debian 12; tools/setup.sh installs them.
 #   oneTBB            libtbb-dev 2021.8           the core: threads (engine/src/parallel alone includes it)
 #   xsimd             libxsimd-dev 8.1            the core: SIMD batches (engine/src/kernel alone; headers only)
-#   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone, and ray_embree.h); 4 will do
+#   Embree            libembree-dev 3.13          tessera::ray (engine/src/ray alone, and ray_embree.h); 4 will do; optional
 #   OpenCASCADE       libocct-modeling-data-dev 7.6  tessera::occt (engine/src/occt and io_occt alone, and occt.h); optional
 #                     libocct-data-exchange-dev 7.6  tessera-cad-reader (engine/src/io_occt alone); optional
 #   Open MPI          libopenmpi-dev 4.1, openmpi-bin  tessera::mpi (engine/src/mpi alone, and mpi.h), tessera_mpi; optional
@@ -49,16 +49,30 @@ else()
     message(FATAL_ERROR "xsimd ${xsimd_VERSION} is found, in ${xsimd_DIR}; version 8 or later is needed")
   endif()
 endif()
-if(TESSERA_BUILD_RAY)
+# Whether tessera::ray has Embree's trees beside its own, what it links for that, and the version, 0 without.
+set(TESSERA_HAS_EMBREE OFF)
+set(tessera_embree)
+set(tessera_embree_major 0)
+if(TESSERA_BUILD_RAY AND TESSERA_USE_EMBREE)
   if(NOT TESSERA_EMBREE_MAJOR MATCHES "^(|3|4)$")
     message(FATAL_ERROR "TESSERA_EMBREE_MAJOR is '${TESSERA_EMBREE_MAJOR}'; it must be 3, 4 or empty")
   elseif(TESSERA_EMBREE_MAJOR)
-    find_package(embree ${TESSERA_EMBREE_MAJOR} REQUIRED)
+    find_package(embree ${TESSERA_EMBREE_MAJOR} QUIET)
   else()
     find_package(embree 3 QUIET)
     if(NOT embree_FOUND)
-      find_package(embree 4 REQUIRED)
+      find_package(embree 4 QUIET)
     endif()
+  endif()
+  if(embree_FOUND)
+    set(TESSERA_HAS_EMBREE ON)
+    set(tessera_embree embree)
+    set(tessera_embree_major ${embree_VERSION_MAJOR})
+  elseif(TESSERA_USE_EMBREE STREQUAL "AUTO" AND NOT TESSERA_EMBREE_MAJOR)
+    message(STATUS "Rays are traced without Embree, and ray_embree.h is left out: it is not found (libembree-dev)")
+  else()
+    message(FATAL_ERROR "Embree ${TESSERA_EMBREE_MAJOR} is not found. On Debian it is libembree-dev. "
+      "TESSERA_USE_EMBREE=OFF builds tessera::ray without it.")
   endif()
 endif()
 if(TESSERA_BUILD_IO)

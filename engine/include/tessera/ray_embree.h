@@ -1,15 +1,18 @@
 #pragma once
 // Puts the patches of a ray scene into the user's own Embree scene, beside other geometry. The only header that names
-// Embree's types: for programs that link Embree themselves.
+// Embree's types: for programs that link Embree themselves. It is there if tessera::ray was built with Embree.
 //
 // Threads: const calls on the ray scene from any number of threads; calls that change a geometry or a scene of Embree's
 // as Embree demands, one at a time.
 
 #ifndef TESSERA_EMBREE_MAJOR
-/// The major version that tessera::ray was built with; its CMake target defines it.
+/// The major version that tessera::ray was built with, or 0; its CMake target defines it.
 #define TESSERA_EMBREE_MAJOR 3
 #endif
-#if TESSERA_EMBREE_MAJOR == 4
+#if TESSERA_EMBREE_MAJOR == 0
+#error \
+    "This tessera::ray was built without Embree: build it with TESSERA_USE_EMBREE=ON, or trace its scenes by RayScene."
+#elif TESSERA_EMBREE_MAJOR == 4
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>

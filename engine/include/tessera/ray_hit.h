@@ -34,7 +34,7 @@ struct Ray {
   /// sqrt(8 tolerance / curvature), all of that stretch counts as the origin.
   double spawn_offset = 0;
 };
-/// The largest magnitude of a valid ray's components: about the square root of float's range, Embree's limit.
+/// The largest magnitude of a valid ray's components: about the square root of float's range.
 inline constexpr double max_ray_component = 1.844e18;
 /// Whether a ray is valid, as Ray says.
 bool is_valid(const Ray& ray);

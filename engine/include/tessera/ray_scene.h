@@ -26,9 +26,9 @@ struct Model;
 
 /// The geometry that rays meet.
 enum class RayMode : std::uint8_t {
-  /// Facets of evaluated grids in an Embree BVH, then Newton on the surface: every hit that is not flagged lies on the
-  /// surface. It shows what the tessellation shows, with true t, u, v and normals. Rays meet what loops keep of that.
-  /// The facets decide what is met and in which order. A silhouette may be missed or flagged. If two surfaces lie
+  /// Facets of evaluated grids in a tree of boxes, then Newton on the surface: every hit that is not flagged lies on
+  /// the surface. It shows what the tessellation shows, with true t, u, v and normals. Rays meet what loops keep of
+  /// that. The facets decide what is met and in which order. A silhouette may be missed or flagged. If two surfaces lie
   /// nearer to each other than to their facets, the farther one may be returned.
   grid,
   /// The surface itself, of the control points in double. Every intersection is found, also at shared borders and
@@ -41,7 +41,7 @@ enum class RayMode : std::uint8_t {
   /// ray begins there. Other rays meet faces alone, those of a closed shell an even number of times. The gap is twice
   /// what samples show, not proven.
   ///
-  /// Pieces of patches lie in an Embree BVH. Interval Newton steps in float search each piece; where these prove
+  /// Pieces of patches lie in a tree of boxes. Interval Newton steps in float search each piece; where these prove
   /// nothing, branch and bound in double does. Every rounding is bounded, also for far origins.
   exact,
 };

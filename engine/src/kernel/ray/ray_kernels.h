@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "kernel/ray/nearest_kernels.h"
+#include "kernel/ray/tree_kernels.h"
 
 namespace tessera { inline namespace abi_0_1 { namespace kernel {
 
@@ -126,6 +127,8 @@ struct RayPacketKernels {
   /// Polish roots of bicubic patches, and of rational ones of degrees up to three.
   void (*polish_cubic)(const PolishJob& job, PolishedRays& rays, unsigned lanes);
   void (*polish_low_rational)(const PolishJob& job, PolishedRays& rays, unsigned lanes);
+  /// Goes on to the next leaf that some rays of the packet may meet. Returns the bits of these rays; 0 at the end.
+  unsigned (*next_packet_leaf)(const TreeNode* nodes, TreePacket& packet, std::uint32_t& leaf);
 };
 
 struct RayKernels {
@@ -143,6 +146,8 @@ struct RayKernels {
   void (*low_rational_point)(const double* points, const double* weights, int m, int n, const double* origin, double u,
                              double v, RayPoint& out);
   NearestKernels nearest;
+  /// Goes on to the next leaf whose box the ray may meet, roughly from near to far. Returns TreeNode::none at the end.
+  std::uint32_t (*next_leaf)(const TreeNode* nodes, TreeWalk& walk);
 };
 
 }}}  // namespace tessera::abi_0_1::kernel

@@ -1,5 +1,6 @@
 // Exact rays. One unit per instruction set: see cmake/TesseraIsaFlags.cmake.
 
+#include <bit>
 #include <limits>
 
 #include "kernel/isa/four_floats.h"
@@ -11,12 +12,14 @@ namespace {
 #include "kernel/ray/cubic_point.inl.h"
 #include "kernel/ray/nearest_kernel.inl.h"
 #include "kernel/ray/ray_kernel.inl.h"
+#include "kernel/ray/tree_kernel.inl.h"
 #if !defined(__SSE2__) || defined(__FMA__)
 #include "kernel/ray/ray_line_kernel.inl.h"
 #include "kernel/ray/ray_packet_kernel.inl.h"
 #include "kernel/ray/ray_polish_kernel.inl.h"
-constexpr RayPacketKernels packet_kernels{ray_lines, trace_packet<false>, trace_packet<true>, polish_roots<false>,
-                                          polish_roots<true>};
+#include "kernel/ray/tree_packet_kernel.inl.h"
+constexpr RayPacketKernels packet_kernels{ray_lines,           trace_packet<false>, trace_packet<true>,
+                                          polish_roots<false>, polish_roots<true>,  next_packet_leaf};
 constexpr const RayPacketKernels* packets = &packet_kernels;
 #else
 constexpr const RayPacketKernels* packets = nullptr;
@@ -31,6 +34,7 @@ extern const RayKernels ray_kernels = {
     cubic_point,
     low_rational_point,
     {node_squares, block_squares, cubic_second_order, low_rational_second_order, half_square},
+    next_leaf,
 };
 
 }}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -1,4 +1,4 @@
-#include "ray/embree/embree_leaves.h"
+// The pieces of patches as primitives of a user geometry.
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include "kernel/table/kernel_table.h"
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_ray.h"
+#include "ray/embree/embree_trees.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -18,15 +19,12 @@ namespace {
 struct LeafCall {
   EmbreeContext context;
   SearchSpace* space;
-  std::array<float, EmbreeLeaves::packet> enter;  ///< s where Embree's ray begins
-  unsigned used;                                  ///< bits of the lanes that have a ray
-  QueryPacket packet;                             ///< a single ray is in the first lane
+  std::array<float, LeafTree::packet> enter;  ///< s where Embree's ray begins
+  unsigned used;                              ///< bits of the lanes that have a ray
+  QueryPacket packet;                         ///< a single ray is in the first lane
 };
-static_assert(EmbreeLeaves::packet == QueryPacket::size);
 
-}  // namespace
-
-struct EmbreeLeaves::State {
+struct LeafState {
   EmbreeMonitor monitor;  // outlives the device, which calls it
   LeafTracer tracer;
   Owned<RTCDevice, DeviceRelease> device;
@@ -34,7 +32,7 @@ struct EmbreeLeaves::State {
   Owned<RTCScene, SceneRelease> scene;
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
-    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    const LeafState& state = *static_cast<const LeafState*>(arguments->geometryUserPtr);
     const LeafTracer& tracer = state.tracer;
     const unsigned k = arguments->primID;
     if (k >= tracer.first_tube) {
@@ -70,7 +68,7 @@ struct EmbreeLeaves::State {
 
   /// Moves the end of Embree's ray to the closest root, rounded up by the padding of boxes. For one ray or a packet.
   static void intersect(const RTCIntersectFunctionNArguments* arguments) {
-    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    const LeafState& state = *static_cast<const LeafState*>(arguments->geometryUserPtr);
     LeafCall& call = *reinterpret_cast<LeafCall*>(arguments->context);
     const unsigned count = arguments->N;
     RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
@@ -83,7 +81,7 @@ struct EmbreeLeaves::State {
   }
 
   static void occluded(const RTCOccludedFunctionNArguments* arguments) {
-    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    const LeafState& state = *static_cast<const LeafState*>(arguments->geometryUserPtr);
     LeafCall& call = *reinterpret_cast<LeafCall*>(arguments->context);
     const unsigned count = arguments->N;
     state.search(
@@ -95,22 +93,33 @@ struct EmbreeLeaves::State {
   }
 };
 
-EmbreeLeaves::EmbreeLeaves(std::unique_ptr<State> state) : state_(std::move(state)) {}
-EmbreeLeaves::EmbreeLeaves(EmbreeLeaves&&) noexcept = default;
-EmbreeLeaves& EmbreeLeaves::operator=(EmbreeLeaves&&) noexcept = default;
-EmbreeLeaves::~EmbreeLeaves() = default;
+/// Owns device, scene and geometry.
+class EmbreeLeaves final : public LeafTree {
+ public:
+  Status start(Isa isa);
+  Status build(const TracedLeaves& leaves, bool follows, const Execution& execution) override;
+  Status refit(double tolerance, const Execution& execution) override;
+  void trace(RayQuery& query, SearchSpace& space) const override;
+  void trace(std::span<RayQuery* const> queries, SearchSpace& space) const override;
+  const LeafTracer& tracer() const override { return state_.tracer; }
+  /// Returns the bytes that Embree has allocated.
+  std::size_t memory_bytes() const override { return state_.monitor.bytes(); }
 
-Result<EmbreeLeaves> EmbreeLeaves::make(Isa isa) {
-  auto state = std::make_unique<State>();
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor, isa);
+ private:
+  LeafState state_;
+};
+
+/// Makes the device; `isa` is for Embree as well.
+Status EmbreeLeaves::start(Isa isa) {
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state_.monitor, isa);
   if (!device) return device.status();
-  state->device = *std::move(device);
-  state->tracer.kernels = &ray_kernels(isa);
-  return EmbreeLeaves(std::move(state));
+  state_.device = *std::move(device);
+  state_.tracer.kernels = &ray_kernels(isa);
+  return {};
 }
 
 Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execution& execution) {
-  State& state = *state_;
+  LeafState& state = state_;
   state.scene.reset();
   static_cast<TracedLeaves&>(state.tracer) = leaves;
   RTCDevice device = state.device.get();
@@ -120,9 +129,9 @@ Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execu
   if (!geometry || !scene) return state.monitor.take();
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(leaves.primitives()));
   rtcSetGeometryUserData(geometry, &state);
-  rtcSetGeometryBoundsFunction(geometry, &State::bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, &State::intersect);
-  rtcSetGeometryOccludedFunction(geometry, &State::occluded);
+  rtcSetGeometryBoundsFunction(geometry, &LeafState::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, &LeafState::intersect);
+  rtcSetGeometryOccludedFunction(geometry, &LeafState::occluded);
   // Embree refits only in dynamic scenes of low quality, which hold one tree per geometry. If the geometry asks for
   // refitting from the start, its tree is built as well as any, and later refitted.
   if (follows) {
@@ -138,7 +147,7 @@ Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execu
 }
 
 Status EmbreeLeaves::refit(double tolerance, const Execution& execution) {
-  State& state = *state_;
+  LeafState& state = state_;
   state.tracer.tolerance = tolerance;
   rtcCommitGeometry(state.geometry.get());
   Status status = commit(state.scene.get(), state.monitor, execution);
@@ -157,12 +166,12 @@ void EmbreeLeaves::trace(RayQuery& query, SearchSpace& space) const {
   call.packet.probes[0] = probe_of(query);
   hit.ray = embree_ray(query.line);
   if (query.wanted == RootsWanted::any) {
-    occluded(state_->scene.get(), call.context, Coherence::incoherent, hit.ray);
+    occluded(state_.scene.get(), call.context, Coherence::incoherent, hit.ray);
     return;
   }
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect(state_->scene.get(), call.context, Coherence::incoherent, hit);
+  intersect(state_.scene.get(), call.context, Coherence::incoherent, hit);
 }
 
 void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space) const {
@@ -183,14 +192,18 @@ void EmbreeLeaves::trace(std::span<RayQuery* const> queries, SearchSpace& space)
     }
   }
   if (queries[0]->wanted == RootsWanted::any) {
-    occluded(state_->scene.get(), call.context, Coherence::coherent, valid, hit.ray);
+    occluded(state_.scene.get(), call.context, Coherence::coherent, valid, hit.ray);
   } else {
-    intersect(state_->scene.get(), call.context, Coherence::coherent, valid, hit);
+    intersect(state_.scene.get(), call.context, Coherence::coherent, valid, hit);
   }
 }
 
-const LeafTracer& EmbreeLeaves::tracer() const { return state_->tracer; }
+}  // namespace
 
-std::size_t EmbreeLeaves::memory_bytes() const { return state_->monitor.bytes(); }
+Result<std::unique_ptr<LeafTree>> make_embree_leaves(Isa isa) {
+  auto tree = std::make_unique<EmbreeLeaves>();
+  if (Status status = tree->start(isa); !status.ok()) return status;
+  return std::unique_ptr<LeafTree>(std::move(tree));
+}
 
 }}  // namespace tessera::abi_0_1

@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "ray/embree/embree_scene.h"
 #include "ray/line/set_view.h"
+#include "ray/tree/facet_tree.h"
 #include "tessera/mesh.h"
 #include "tessera/patch_set.h"
 #include "tessera/status.h"
@@ -16,16 +16,16 @@ namespace tessera { inline namespace abi_0_1 {
 class FacetSource {
  public:
   virtual ~FacetSource() = default;
-  /// Makes the facets for the set as it is now, and the BVH over them, which borrows them. After an error the scene is
+  /// Makes the facets for the set as it is now, and the tree over them, which borrows them. After an error the tree is
   /// empty.
-  virtual Status build(const SetView& set, EmbreeScene& scene, const Execution& execution) = 0;
+  virtual Status build(const SetView& set, FacetTree& tree, const Execution& execution) = 0;
   // The functions below describe the facets that were built.
 
   /// Returns an upper bound of the facets' distances from the surface.
   virtual double deviation(const SetView& set) const = 0;
   /// Returns the longest side of a facet in the parameters of its patch.
   virtual double largest_cell() const = 0;
-  /// Converts a hit of the BVH to a patch and its parameters.
+  /// Converts a hit of the tree to a patch and its parameters.
   virtual FacetHit located(const FacetHit& hit) const = 0;
   virtual std::size_t memory_bytes() const = 0;
 };

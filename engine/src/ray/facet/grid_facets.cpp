@@ -16,16 +16,16 @@ class GridFacets final : public FacetSource {
  public:
   GridFacets(UniformGrid grid, int rate) : grid_(std::move(grid)), rate_(rate) {}
 
-  Status build(const SetView& set, EmbreeScene& scene, const Execution& execution) override {
+  Status build(const SetView& set, FacetTree& tree, const Execution& execution) override {
     GridVertices vertices{nullptr, set.patch_count(), rate_ + 1, rate_ + 1};
-    if (Status status = EmbreeScene::check_size(vertices); !status.ok()) return status;
+    if (Status status = FacetTree::check_size(vertices); !status.ok()) return status;
     positions_.resize(3 * grid_.capacity() + padding);
     const auto view = View3<float>::interleaved(std::span(positions_).first(3 * grid_.capacity()));
     Status status =
         grid_.run(set.impl(), QuantityViews<float>{.position = view, .du = {}, .dv = {}, .normal = {}}, execution);
     if (!status.ok()) return status;
     vertices.data = positions_.data();
-    return scene.build(vertices, execution);
+    return tree.build(vertices, execution);
   }
   double deviation(const SetView& set) const override {
     double most = 0;

@@ -21,7 +21,7 @@ class MeshFacets final : public FacetSource {
  public:
   explicit MeshFacets(const Mesh& mesh) : mesh_(mesh) {}
 
-  Status build(const SetView& set, EmbreeScene& scene, const Execution& execution) override {
+  Status build(const SetView& set, FacetTree& tree, const Execution& execution) override {
     if (Status status = check(set); !status.ok()) return status;
     measure_cells(set);
     // Embree reads the last vertex as 16 bytes.
@@ -32,7 +32,7 @@ class MeshFacets final : public FacetSource {
       copy_ = mesh_.positions;
     }
     const float* const positions = has_room ? mesh_.positions.data() : copy_.data();
-    return scene.build(FacetVertices{positions, mesh_.vertex_count(), mesh_.indices, mesh_.quads}, execution);
+    return tree.build(FacetVertices{positions, mesh_.vertex_count(), mesh_.indices, mesh_.quads}, execution);
   }
   double deviation(const SetView& set) const override {
     double most = 0;

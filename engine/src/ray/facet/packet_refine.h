@@ -7,10 +7,10 @@
 #include <span>
 
 #include "kernel/ray/ray_kernels.h"
-#include "ray/embree/embree_scene.h"
 #include "ray/facet/refine.h"
 #include "ray/line/ray_segment.h"
 #include "ray/line/set_view.h"
+#include "ray/tree/facet_tree.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -25,7 +25,7 @@ class SearchSpace {
     if (memory_ && pool_) pool_->give(std::move(memory_));
   }
   /// Takes the memory when it is first needed, before any other call, so that rays decided without a search need none.
-  /// Returns false if there is none. Called from Embree, which cannot handle exceptions.
+  /// Returns false if there is none. Called from within a tree, and Embree cannot handle exceptions.
   bool make_ready() noexcept {
     if (memory_) return true;
     SearchPool none;

@@ -1,7 +1,5 @@
 #include "ray/leaf/leaf_tracer.h"
 
-#include <xmmintrin.h>
-
 #include <algorithm>
 
 #include "ray/border/spawn_root.h"
@@ -12,13 +10,13 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-// Padding of s in a kernel: twice the rounding of the ray's start and direction in float (embree_ray.h).
+// Padding of s in a kernel: twice the rounding of the ray's start and direction in float (box_padding.h).
 constexpr double probe_pad = 4e-6;
 
 float narrow(double x) { return static_cast<float>(x); }
 
 void fetch(const void* from, std::size_t bytes) {
-  for (std::size_t k = 0; k < bytes; k += 64) _mm_prefetch(static_cast<const char*>(from) + k, _MM_HINT_T0);
+  for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(from) + k);
 }
 
 /// Prefetches the data that polish a root and make a hit, while the kernel works. The leaf gives the points' address,

@@ -1,5 +1,5 @@
 #pragma once
-// A ray as the BVH of facets takes it.
+// A ray as the tree of facets takes it.
 
 #include <array>
 

@@ -190,7 +190,7 @@ struct RayQuery {
     if (wanted == RootsWanted::all) {
       try {
         roots.push_back(root);
-      } catch (...) {  // called from Embree, which cannot handle exceptions
+      } catch (...) {  // called from within a tree, and Embree cannot handle exceptions
         overflow = true;
       }
     } else if (precedes(root, t, best, best_t)) {

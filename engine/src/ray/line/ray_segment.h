@@ -23,7 +23,7 @@ struct RaySegment {
   double t_at(double s) const { return (offset + s) / scale; }
   /// Bounds the rounding of an s, by where the ray and the segment start.
   double rounding() const;
-  /// Returns the ray for Embree, from arc length s_near on; rounded outwards at the far end.
+  /// Returns the ray for a tree of facets, from arc length s_near on; rounded outwards at the far end.
   FacetRay facet_ray(float s_near = 0) const;
 };
 

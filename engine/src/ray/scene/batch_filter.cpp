@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "ray/embree/embree_scene.h"
+#include "ray/line/flush_denormals.h"
 #include "tessera/guard.h"
 
 namespace tessera { inline namespace abi_0_1 {

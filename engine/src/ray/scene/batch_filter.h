@@ -1,5 +1,5 @@
 #pragma once
-// Calls of the caller's filter, which may throw, from searches inside of Embree, which must not throw.
+// Calls of the caller's filter, which may throw, from searches inside of trees, which must not throw.
 
 #include <atomic>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Exact mode: pieces of patches in an Embree BVH, each searched for all its roots.
+// Exact mode: pieces of patches in a tree, each searched for all its roots.
 
 #include <algorithm>
 #include <array>
@@ -16,10 +16,9 @@
 #include "ray/border/fold_roots.h"
 #include "ray/border/lazy_adjacency.h"
 #include "ray/border/nearest_root.h"
-#include "ray/embree/embree_leaves.h"
-#include "ray/embree/embree_scene.h"
 #include "ray/leaf/leaf_nets.h"
 #include "ray/leaf/leaf_search.h"
+#include "ray/line/flush_denormals.h"
 #include "ray/line/line_aside.h"
 #include "ray/line/ray_lines.h"
 #include "ray/scene/batch_filter.h"
@@ -29,6 +28,7 @@
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
+#include "ray/tree/ray_trees.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -36,10 +36,10 @@ namespace {
 constexpr double default_tolerance = 2e-12;  // share of the size
 constexpr std::size_t max_leaves = 0xffffffff;
 constexpr double max_bend = 1;     // share of a piece's length
-constexpr double max_reach = 0.5;  // of tubes beyond the box of pieces, in the scene's coordinates: see embree_ray.h
+constexpr double max_reach = 0.5;  // of tubes beyond the box of pieces, in the scene's coordinates: see box_padding.h
 const double least_tolerance = 2 * search_rounding(max_degree, max_degree, Leaf::max_halvings, SearchSpace::max_depth);
 constexpr std::size_t min_in_turn = 4;
-static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= EmbreeLeaves::packet);
+static_assert(rays_per_turn == RayTurn::size && rays_per_turn <= LeafTree::packet);
 
 /// The rays of one turn after tracing. A ray that is invalid or misses the scene has no query.
 struct TracedTurn {
@@ -50,12 +50,12 @@ struct TracedTurn {
 
 class ExactScene final : public PatchScene, private ExactSource {
  public:
-  ExactScene(const PatchSet& set, EmbreeLeaves scene, const RaySceneOptions& options)
-      : PatchScene(set), scene_(std::move(scene)), options_(options), follows_(options.editable) {}
+  ExactScene(const PatchSet& set, std::unique_ptr<LeafTree> tree, const RaySceneOptions& options)
+      : PatchScene(set), tree_(std::move(tree)), options_(options), follows_(options.editable) {}
 
   std::size_t memory_bytes() const override {
     return nets_.memory_bytes() + trims_.memory_bytes() + tubes_.memory_bytes() + adjacency_.memory_bytes() +
-           scene_.memory_bytes();
+           tree_->memory_bytes();
   }
 
   const ExactSource* exact_source() const override { return this; }
@@ -63,7 +63,7 @@ class ExactScene final : public PatchScene, private ExactSource {
 
  private:
   bool fresh() const override { return Impl::fresh(); }
-  const LeafTracer& tracer() const override { return scene_.tracer(); }
+  const LeafTracer& tracer() const override { return tree_->tracer(); }
   Box3 reach() const override { return {frame_.to_model(scene_box_.lower), frame_.to_model(scene_box_.upper)}; }
   RayLine line(const Ray& ray) const override { return line_of(ray, frame_, scene_box_); }
   RayLine line(const Ray& ray, const Placement& placement) const override {
@@ -105,18 +105,18 @@ class ExactScene final : public PatchScene, private ExactSource {
   void trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const;
   void trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const;
 
-  LeafNets nets_;  // borrowed by scene_, like the borders
+  LeafNets nets_;  // borrowed by tree_, like the borders
   LazyAdjacency adjacency_;
   LeafTrims trims_;
   EdgeTubes tubes_;
-  EmbreeLeaves scene_;
+  std::unique_ptr<LeafTree> tree_;
   RaySceneOptions options_;
   mutable SearchPool pool_;
   SceneFrame frame_;
   Box3 box_;        // of the leaves' control points, in the model's coordinates
   Box3 scene_box_;  // of all possible hits, in the scene's
   double size_ = 0;
-  bool follows_;     // the BVH can be updated
+  bool follows_;     // the tree can be updated
   int updates_ = 0;  // since the last build
 };
 
@@ -158,7 +158,7 @@ Status ExactScene::build(const Execution& execution) {
                             &adjacency_, own_patches(),
                             tolerance(), trims_.any() ? &trims_ : nullptr,
                             &tubes_,     static_cast<unsigned>(leaf_count)};
-  if (Status status = scene_.build(leaves, follows_, execution); !status.ok()) return status;
+  if (Status status = tree_->build(leaves, follows_, execution); !status.ok()) return status;
   if (!follows_) nets_.drop_boxes();
   return {};
 }
@@ -177,7 +177,7 @@ Status ExactScene::update(std::uint64_t since, const Execution& execution) {
   if (!same) return same.status();
   if (!*same) return build(execution);
   measure();
-  return scene_.refit(tolerance(), execution);
+  return tree_->refit(tolerance(), execution);
 }
 
 void ExactScene::set_hit(const RayLine& line, const LeafRoot& root, HitParts parts, Hit& hit) const {
@@ -225,8 +225,8 @@ Result<Hit> ExactScene::resolve(const Ray& ray, std::uint32_t patch, double u, d
 /// Traces the queries, as a packet if the rays are coherent.
 void ExactScene::trace_queries(std::span<RayQuery* const> queries, SearchSpace& space) const {
   if (worth_a_packet(queries.size(), [&](std::size_t k) -> const RayLine& { return queries[k]->line; }))
-    return scene_.trace(queries, space);
-  for (RayQuery* query : queries) scene_.trace(*query, space);
+    return tree_->trace(queries, space);
+  for (RayQuery* query : queries) tree_->trace(*query, space);
 }
 
 void ExactScene::trace_turn(std::span<std::optional<RayQuery>> queries, SearchSpace& space) const {
@@ -273,7 +273,7 @@ void ExactScene::trace_each(const RayBatch& batch, std::size_t begin, std::size_
       query->filter = filter.if_any(), query->index = k;
       if (along.spawn > 0) prepare_borders();
       const FlushDenormals flush;
-      scene_.trace(*query, space);
+      tree_->trace(*query, space);
     }
     done({k, {&valid, 1}, {&query, 1}});
   }
@@ -333,7 +333,7 @@ void ExactScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>
 
 void ExactScene::trace(RayQuery& query) const {
   SearchSpace space(nets_.largest(), &pool_);
-  scene_.trace(query, space);
+  tree_->trace(query, space);
 }
 
 void ExactScene::trace(std::span<RayQuery* const> queries) const {
@@ -391,9 +391,9 @@ Result<std::unique_ptr<RayScene::Impl>> make_exact_scene(const PatchSet& set, co
   if (Status status = check_exact(options); !status.ok()) return status;
   const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
-  Result<EmbreeLeaves> scene = EmbreeLeaves::make(*isa);
-  if (!scene) return scene.status();
-  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(scene), options));
+  Result<std::unique_ptr<LeafTree>> tree = ray_trees().leaves(*isa);
+  if (!tree) return tree.status();
+  return std::unique_ptr<RayScene::Impl>(std::make_unique<ExactScene>(set, *std::move(tree), options));
 }
 
 }}  // namespace tessera::abi_0_1

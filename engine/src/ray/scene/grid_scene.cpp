@@ -1,4 +1,4 @@
-// Grid mode: evaluated grids in an Embree BVH, then Newton's method.
+// Grid mode: evaluated grids in a tree, then Newton's method.
 
 #include <algorithm>
 #include <array>
@@ -8,15 +8,16 @@
 
 #include "kernel/table/kernel_table.h"
 #include "ray/border/adjacency.h"
-#include "ray/embree/embree_scene.h"
 #include "ray/facet/facet_source.h"
 #include "ray/facet/packet_refine.h"
 #include "ray/facet/refine.h"
 #include "ray/leaf/patch_regions.h"
+#include "ray/line/flush_denormals.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/batch_layout.h"
 #include "ray/scene/ray_scene_impl.h"
 #include "ray/scene/surface_hit.h"
+#include "ray/tree/ray_trees.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -30,8 +31,8 @@ constexpr double margin_deviations = 4;
 constexpr double reach_cells = 3;        // a facet of a regular grid lies within one cell of its root
 constexpr double float_rounding = 1e-6;  // share of the size: positions, origins and directions in float
 
-using Packet = std::array<FacetRay, EmbreeScene::packet>;
-static_assert(rays_per_turn <= EmbreeScene::packet);
+using Packet = std::array<FacetRay, FacetTree::packet>;
+static_assert(rays_per_turn <= FacetTree::packet);
 
 /// Returns whether rays start near each other and run nearly the same way, so that a packet pays.
 bool coherent(std::span<const RaySegment> segments, double size) {
@@ -45,26 +46,26 @@ bool coherent(std::span<const RaySegment> segments, double size) {
 
 class GridScene final : public PatchScene {
  public:
-  GridScene(const PatchSet& set, std::unique_ptr<FacetSource> facets, EmbreeScene scene, bool refines, bool has_holes,
-            Isa isa)
+  GridScene(const PatchSet& set, std::unique_ptr<FacetSource> facets, std::unique_ptr<FacetTree> tree, bool refines,
+            bool has_holes, Isa isa)
       : PatchScene(set),
         facets_(std::move(facets)),
-        scene_(std::move(scene)),
+        tree_(std::move(tree)),
         refines_(refines),
         has_holes_(has_holes),
         kernels_(ray_kernels(isa)) {}
 
   std::size_t memory_bytes() const override {
-    return facets_->memory_bytes() + regions_.memory_bytes() + adjacency_.memory_bytes() + scene_.memory_bytes();
+    return facets_->memory_bytes() + regions_.memory_bytes() + adjacency_.memory_bytes() + tree_->memory_bytes();
   }
 
  private:
   Status build(const Execution& execution) override;
-  /// Embree does not refit grids.
+  /// Trees of facets are not refitted.
   Status update(std::uint64_t, const Execution& execution) override { return build(execution); }
   double size() const override { return size_; }
   Box3 model_box() const override {
-    const Box3 box = scene_.box();
+    const Box3 box = tree_->box();
     return {box.lower + set().origin(), box.upper + set().origin()};
   }
   bool can_filter() const override { return false; }
@@ -86,11 +87,11 @@ class GridScene final : public PatchScene {
   bool meets_kept_facet(const RaySegment& segment) const;
   bool accept(const Ray& ray, const RaySegment& segment, const SurfaceRoot& root, bool refined, Hit& hit) const;
 
-  FacetHit closest_facet(const FacetRay& ray) const { return located(scene_.closest(ray)); }
+  FacetHit closest_facet(const FacetRay& ray) const { return located(tree_->closest(ray)); }
   FacetHit located(const FacetHit& hit) const { return hit.hit() ? facets_->located(hit) : hit; }
 
-  std::unique_ptr<FacetSource> facets_;  // borrowed by scene_
-  EmbreeScene scene_;
+  std::unique_ptr<FacetSource> facets_;  // borrowed by tree_
+  std::unique_ptr<FacetTree> tree_;
   bool refines_;
   bool has_holes_;  // the facets do: then all of them are kept
   PatchRegions regions_;
@@ -125,8 +126,8 @@ Status GridScene::build(const Execution& execution) {
   if (!has_holes_ && !regions_.any()) {
     if (Status status = regions_.build(set(), execution); !status.ok()) return status;
   }
-  // Until the BVH is complete nothing may trace in it, so a failure before that leaves the scene stale.
-  if (Status status = facets_->build(set(), scene_, execution); !status.ok()) return status;
+  // Until the tree is complete nothing may trace in it, so a failure before that leaves the scene stale.
+  if (Status status = facets_->build(set(), *tree_, execution); !status.ok()) return status;
   measure();
   return {};
 }
@@ -144,8 +145,8 @@ void GridScene::closest_piece(const RayBatch& batch, const HitWriter& writer, st
 
 /// Traces at most a packet of rays.
 void GridScene::closest_packet(std::span<const Ray> rays, std::span<Hit> hits) const {
-  std::array<RaySegment, EmbreeScene::packet> segments;
-  std::array<FacetHit, EmbreeScene::packet> facets;
+  std::array<RaySegment, FacetTree::packet> segments;
+  std::array<FacetHit, FacetTree::packet> facets;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     hits[k] = {};
     if (is_valid(rays[k])) {
@@ -170,7 +171,7 @@ void GridScene::trace(std::span<const RaySegment> segments, std::span<FacetHit> 
   if (segments.size() > 1 && coherent(segments, size_)) {
     Packet rays;
     for (std::size_t k = 0; k < segments.size(); ++k) rays[k] = segments[k].facet_ray();
-    scene_.closest(std::span(rays).first(segments.size()), facets);
+    tree_->closest(std::span(rays).first(segments.size()), facets);
     for (FacetHit& facet : facets.first(segments.size())) facet = located(facet);
     return;
   }
@@ -250,7 +251,7 @@ void GridScene::occluded_piece(const RayBatch& batch, const View1<std::uint8_t>&
 
 /// Tests at most a packet of rays. Facets decide, so the rays end at [tnear, tfar].
 void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
-  std::array<RaySegment, EmbreeScene::packet> segments;
+  std::array<RaySegment, FacetTree::packet> segments;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (is_valid(rays[k])) segments[k] = cut(rays[k], set().origin(), box_, 0);
   }
@@ -263,11 +264,11 @@ void GridScene::occluded_packet(std::span<const Ray> rays, std::span<std::uint8_
   if (used.size() > 1 && coherent(used, size_)) {
     Packet packet;
     for (std::size_t k = 0; k < used.size(); ++k) packet[k] = used[k].facet_ray();
-    scene_.occluded(std::span(packet).first(used.size()), occluded);
+    tree_->occluded(std::span(packet).first(used.size()), occluded);
     return;
   }
   for (std::size_t k = 0; k < used.size(); ++k) {
-    occluded[k] = !used[k].empty && scene_.occluded(used[k].facet_ray());
+    occluded[k] = !used[k].empty && tree_->occluded(used[k].facet_ray());
   }
 }
 
@@ -290,10 +291,10 @@ Result<std::unique_ptr<RayScene::Impl>> scene_of(const PatchSet& set, std::uniqu
                                                  const RaySceneOptions& options, bool has_holes) {
   const Result<Isa> isa = usable_isa(options.isa);
   if (!isa) return isa.status();
-  Result<EmbreeScene> scene = EmbreeScene::make();
-  if (!scene) return scene.status();
+  Result<std::unique_ptr<FacetTree>> tree = ray_trees().facets(*isa);
+  if (!tree) return tree.status();
   return std::unique_ptr<RayScene::Impl>(
-      std::make_unique<GridScene>(set, std::move(facets), *std::move(scene), options.refine, has_holes, *isa));
+      std::make_unique<GridScene>(set, std::move(facets), *std::move(tree), options.refine, has_holes, *isa));
 }
 
 }  // namespace

@@ -9,8 +9,7 @@
 #include <string>
 
 #include "base/impl_access.h"
-#include "ray/embree/embree_boxes.h"
-#include "ray/embree/embree_scene.h"
+#include "ray/line/flush_denormals.h"
 #include "ray/line/ray_lines.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/batch_filter.h"
@@ -19,6 +18,7 @@
 #include "ray/scene/exact_source.h"
 #include "ray/scene/instance_lane.h"
 #include "ray/scene/ray_scene_impl.h"
+#include "ray/tree/ray_trees.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -59,15 +59,15 @@ using Lane = InstanceLane;
 
 class InstanceScene final : public RayScene::Impl {
  public:
-  InstanceScene(std::vector<PlacedScene> instances, EmbreeBoxes boxes)
-      : instances_(std::move(instances)), boxes_(std::move(boxes)) {
+  InstanceScene(std::vector<PlacedScene> instances, std::unique_ptr<InstanceTree> tree)
+      : instances_(std::move(instances)), tree_(std::move(tree)) {
     for (const PlacedScene& instance : instances_) {
       if (std::find(scenes_.begin(), scenes_.end(), instance.scene) == scenes_.end()) scenes_.push_back(instance.scene);
     }
   }
 
   std::size_t memory_bytes() const override {
-    return boxes_.memory_bytes() + instances_.capacity() * sizeof(PlacedScene);
+    return tree_->memory_bytes() + instances_.capacity() * sizeof(PlacedScene);
   }
   double spawn_offset() const override { return spawn_offset_; }
   Result<LocalGeometry> local_geometry(const Hit& hit) const override;
@@ -108,7 +108,7 @@ class InstanceScene final : public RayScene::Impl {
 
   std::vector<PlacedScene> instances_;
   std::vector<const RayScene::Impl*> scenes_;  // each once
-  EmbreeBoxes boxes_;
+  std::unique_ptr<InstanceTree> tree_;
   double spawn_offset_ = 0;  // the largest of any instance
   SceneFrame frame_;
   Box3 box_, scene_box_;  // of all instances, in the world's and this scene's coordinates
@@ -146,7 +146,7 @@ Status InstanceScene::build(const Execution& execution) {
   frame_ = SceneFrame::around(box_);
   for (Box3& box : boxes) box = {frame_.to_scene(box.lower), frame_.to_scene(box.upper)};
   scene_box_ = {frame_.to_scene(box_.lower), frame_.to_scene(box_.upper)};
-  return boxes_.build(std::move(boxes), execution);
+  return tree_->build(std::move(boxes), execution);
 }
 
 /// Runs a query of each lane against an instance, and calls take(lane, query) after it.
@@ -179,7 +179,7 @@ template <std::size_t Most>
 void InstanceScene::meet_together(std::span<Lane* const> lanes, RootsWanted wanted, BatchFilter* filter) const {
   std::array<const RayLine*, Most> lines;
   for (std::size_t k = 0; k < lanes.size(); ++k) lines[k] = lanes[k]->line;
-  boxes_.visit(std::span(lines).first(lanes.size()), [&](unsigned instance, unsigned met, auto& ends) {
+  tree_->visit(std::span(lines).first(lanes.size()), [&](unsigned instance, unsigned met, auto& ends) {
     std::array<Lane*, Most> now;
     std::size_t count = 0;
     for (std::size_t k = 0; k < lanes.size(); ++k) {
@@ -194,7 +194,7 @@ void InstanceScene::meet_together(std::span<Lane* const> lanes, RootsWanted want
 void InstanceScene::meet(std::span<Lane* const> lanes, RootsWanted wanted, BatchFilter* filter) const {
   const FlushDenormals flush;
   if (worth_a_packet(lanes.size(), [&](std::size_t k) -> const RayLine& { return *lanes[k]->line; }))
-    return meet_together<EmbreeBoxes::packet>(lanes, wanted, filter);
+    return meet_together<InstanceTree::packet>(lanes, wanted, filter);
   for (Lane* const& lane : lanes) meet_together<1>({&lane, 1}, wanted, filter);
 }
 
@@ -319,7 +319,7 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
         place(line, instance, {}, hit);
         hits.push_back(hit);
       }
-    } catch (...) {  // called from Embree, which cannot handle exceptions
+    } catch (...) {  // called from within a tree, and Embree cannot handle exceptions
       lane.overflow = true;
     }
     lane.take(query, instance);
@@ -327,7 +327,7 @@ Status InstanceScene::all_of(const Ray& ray, std::vector<Hit>& hits) const {
   {
     const FlushDenormals flush;
     Lane* const lanes[] = {&lane};
-    boxes_.visit({&lane.line, 1}, [&](unsigned instance, unsigned, auto& ends) {
+    tree_->visit({&lane.line, 1}, [&](unsigned instance, unsigned, auto& ends) {
       meet_instance<1>(instance, lanes, RootsWanted::all, nullptr,
                        [&](Lane&, RayQuery& query) { take(instance, query); });
       ends[0] = lane.end(RootsWanted::all);
@@ -361,9 +361,9 @@ Result<std::unique_ptr<RayScene::Impl>> make_instance_scene(std::span<const RayI
                     static_cast<std::ptrdiff_t>(k));
     out.push_back({&impl_of(*scene), impl_of(*scene).exact_source(), instances[k].to_world, instances[k].mask, {}});
   }
-  Result<EmbreeBoxes> boxes = EmbreeBoxes::make();
-  if (!boxes) return boxes.status();
-  return std::unique_ptr<RayScene::Impl>(std::make_unique<InstanceScene>(std::move(out), *std::move(boxes)));
+  Result<std::unique_ptr<InstanceTree>> tree = ray_trees().instances(*out[0].source->tracer().kernels);
+  if (!tree) return tree.status();
+  return std::unique_ptr<RayScene::Impl>(std::make_unique<InstanceScene>(std::move(out), *std::move(tree)));
 }
 
 }}  // namespace tessera::abi_0_1

@@ -8,7 +8,7 @@
 #include "ray/embree/embree_api.h"
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_origin.h"
-#include "ray/embree/embree_scene.h"
+#include "ray/line/flush_denormals.h"
 #include "ray/line/ray_segment.h"
 #include "ray/scene/exact_source.h"
 #include "ray/scene/ray_scene_impl.h"

@@ -18,7 +18,7 @@ namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 constexpr std::size_t rays_per_task = 512;
-constexpr double progress_ends[] = {0.2, 0.4};  // after the cuts, after the pieces; the BVH is the rest
+constexpr double progress_ends[] = {0.2, 0.4};  // after the cuts, after the pieces; the tree is the rest
 
 Status stale() {
   return Status(StatusCode::stale, "the patch set was edited after this ray scene was made: call refit");

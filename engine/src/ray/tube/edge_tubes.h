@@ -49,7 +49,7 @@ struct EdgeEnd {
   double unsure = 0;
 };
 
-/// Primitives of the BVH beside leaves. Const calls from any number of threads.
+/// Primitives of the tree beside leaves. Const calls from any number of threads.
 class EdgeTubes {
  public:
   /// Makes the tubes of a set's edges. `least`: the radius of a tube whose faces meet. Errors: cancelled,

@@ -1,10 +1,11 @@
-#include "ray/embree/embree_boxes.h"
+// The boxes of instances as primitives of a user geometry.
 
 #include <algorithm>
 #include <utility>
 
 #include "ray/embree/embree_device.h"
 #include "ray/embree/embree_ray.h"
+#include "ray/embree/embree_trees.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -13,21 +14,19 @@ namespace {
 /// to this.
 struct BoxCall {
   EmbreeContext context;
-  EmbreeBoxes::Visit visit;
-  std::size_t count;                             ///< number of lines
-  std::array<float, EmbreeBoxes::packet> enter;  ///< s where Embree's rays begin, by their ids
+  InstanceTree::Visit visit;
+  std::size_t count;                              ///< number of lines
+  std::array<float, InstanceTree::packet> enter;  ///< s where Embree's rays begin, by their ids
 };
 
-}  // namespace
-
-struct EmbreeBoxes::State {
+struct InstanceState {
   EmbreeMonitor monitor;  // outlives the device, which calls it
   std::vector<Box3> boxes;
   Owned<RTCDevice, DeviceRelease> device;
   Owned<RTCScene, SceneRelease> scene;
 
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
-    const State& state = *static_cast<const State*>(arguments->geometryUserPtr);
+    const InstanceState& state = *static_cast<const InstanceState*>(arguments->geometryUserPtr);
     *arguments->bounds_o = padded(state.boxes[arguments->primID]);
   }
 
@@ -42,7 +41,7 @@ struct EmbreeBoxes::State {
       if (arguments->valid[k] != 0 && ray < call.count) lanes |= 1u << ray;
     }
     if (lanes == 0) return;
-    std::array<double, packet> ends;
+    std::array<double, InstanceTree::packet> ends;
     call.visit(arguments->primID, lanes, ends);
     for (unsigned k = 0; k < count; ++k) {
       const unsigned ray = RTCRayN_id(rays, count, k);
@@ -53,21 +52,28 @@ struct EmbreeBoxes::State {
   }
 };
 
-EmbreeBoxes::EmbreeBoxes(std::unique_ptr<State> state) : state_(std::move(state)) {}
-EmbreeBoxes::EmbreeBoxes(EmbreeBoxes&&) noexcept = default;
-EmbreeBoxes& EmbreeBoxes::operator=(EmbreeBoxes&&) noexcept = default;
-EmbreeBoxes::~EmbreeBoxes() = default;
+/// Owns device, scene and geometry.
+class EmbreeInstances final : public InstanceTree {
+ public:
+  Status start();
+  Status build(std::vector<Box3> boxes, const Execution& execution) override;
+  void visit(std::span<const RayLine* const> lines, Visit visit) const override;
+  /// Returns the bytes that Embree has allocated, and those of the boxes.
+  std::size_t memory_bytes() const override { return state_.monitor.bytes() + state_.boxes.capacity() * sizeof(Box3); }
 
-Result<EmbreeBoxes> EmbreeBoxes::make() {
-  auto state = std::make_unique<State>();
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor);
+ private:
+  InstanceState state_;
+};
+
+Status EmbreeInstances::start() {
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state_.monitor);
   if (!device) return device.status();
-  state->device = *std::move(device);
-  return EmbreeBoxes(std::move(state));
+  state_.device = *std::move(device);
+  return {};
 }
 
-Status EmbreeBoxes::build(std::vector<Box3> boxes, const Execution& execution) {
-  State& state = *state_;
+Status EmbreeInstances::build(std::vector<Box3> boxes, const Execution& execution) {
+  InstanceState& state = state_;
   state.scene.reset();
   state.boxes = std::move(boxes);
   const Owned<RTCGeometry, GeometryRelease> geometry(rtcNewGeometry(state.device.get(), RTC_GEOMETRY_TYPE_USER));
@@ -75,8 +81,8 @@ Status EmbreeBoxes::build(std::vector<Box3> boxes, const Execution& execution) {
   if (!geometry || !scene) return state.monitor.take();
   rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(state.boxes.size()));
   rtcSetGeometryUserData(geometry.get(), &state);
-  rtcSetGeometryBoundsFunction(geometry.get(), &State::bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry.get(), &State::intersect);
+  rtcSetGeometryBoundsFunction(geometry.get(), &InstanceState::bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry.get(), &InstanceState::intersect);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
@@ -85,7 +91,7 @@ Status EmbreeBoxes::build(std::vector<Box3> boxes, const Execution& execution) {
   return {};
 }
 
-void EmbreeBoxes::visit(std::span<const RayLine* const> lines, Visit visit) const {
+void EmbreeInstances::visit(std::span<const RayLine* const> lines, Visit visit) const {
   BoxCall call{embree_context(), visit, lines.size(), {}};
   for (std::size_t k = 0; k < lines.size(); ++k) call.enter[k] = static_cast<float>(lines[k]->enter);
   if (lines.size() == 1) {
@@ -93,18 +99,22 @@ void EmbreeBoxes::visit(std::span<const RayLine* const> lines, Visit visit) cons
     ray.ray = embree_ray(*lines[0]);
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    intersect(state_->scene.get(), call.context, Coherence::incoherent, ray);
+    intersect(state_.scene.get(), call.context, Coherence::incoherent, ray);
     return;
   }
   RTCRayHit16 rays;
   alignas(64) int valid[packet];
   set_packet(
       lines.size(), [&](std::size_t k) -> const RayLine& { return *lines[k]; }, rays, valid);
-  intersect(state_->scene.get(), call.context, Coherence::coherent, valid, rays);
+  intersect(state_.scene.get(), call.context, Coherence::coherent, valid, rays);
 }
 
-std::size_t EmbreeBoxes::memory_bytes() const {
-  return state_->monitor.bytes() + state_->boxes.capacity() * sizeof(Box3);
+}  // namespace
+
+Result<std::unique_ptr<InstanceTree>> make_embree_instances(const kernel::RayKernels&) {
+  auto tree = std::make_unique<EmbreeInstances>();
+  if (Status status = tree->start(); !status.ok()) return status;
+  return std::unique_ptr<InstanceTree>(std::move(tree));
 }
 
 }}  // namespace tessera::abi_0_1

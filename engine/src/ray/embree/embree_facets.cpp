@@ -1,6 +1,4 @@
-#include "ray/embree/embree_scene.h"
-
-#include <xmmintrin.h>
+// Grids, triangles and quads as geometries of Embree.
 
 #include <algorithm>
 #include <string>
@@ -8,12 +6,10 @@
 #include <vector>
 
 #include "ray/embree/embree_device.h"
+#include "ray/embree/embree_trees.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-constexpr unsigned flush_and_denormals_are_zero = 0x8040;
-constexpr unsigned all_exceptions_masked = 0x1f80;
 
 RTCRay to_embree(const FacetRay& ray) {
   RTCRay out{};
@@ -26,12 +22,12 @@ RTCRay to_embree(const FacetRay& ray) {
 
 constexpr unsigned quad_geometry = 1;  // triangles and grids: 0
 
-using Lanes = std::array<int, EmbreeScene::packet>;  // -1: active, 0: not
+using Lanes = std::array<int, FacetTree::packet>;  // -1: active, 0: not
 
 /// Fills the lanes of a packet and returns which are active. Idle lanes repeat the first ray.
 Lanes to_embree(std::span<const FacetRay> rays, RTCRay16& out) {
   Lanes valid{};
-  for (std::size_t k = 0; k < EmbreeScene::packet; ++k) {
+  for (std::size_t k = 0; k < FacetTree::packet; ++k) {
     const FacetRay& ray = rays[k < rays.size() ? k : 0];
     valid[k] = k < rays.size() ? -1 : 0;
     out.org_x[k] = ray.origin[0], out.org_y[k] = ray.origin[1], out.org_z[k] = ray.origin[2];
@@ -42,17 +38,7 @@ Lanes to_embree(std::span<const FacetRay> rays, RTCRay16& out) {
   return valid;
 }
 
-}  // namespace
-
-FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) {
-  _mm_setcsr(saved_ | flush_and_denormals_are_zero | all_exceptions_masked);
-}
-FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
-
-CountDenormals::CountDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ & ~flush_and_denormals_are_zero); }
-CountDenormals::~CountDenormals() { _mm_setcsr(saved_); }
-
-struct EmbreeScene::State {
+struct FacetState {
   EmbreeMonitor monitor;        // outlives the device, which calls it
   std::vector<RTCGrid> grids;   // borrowed by the geometry
   std::uint32_t triangles = 0;  // come before quads
@@ -64,30 +50,35 @@ struct EmbreeScene::State {
   }
 };
 
-EmbreeScene::EmbreeScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
-EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
-EmbreeScene& EmbreeScene::operator=(EmbreeScene&&) noexcept = default;
-EmbreeScene::~EmbreeScene() = default;
+/// Owns device, scene and geometry.
+class EmbreeFacets final : public FacetTree {
+ public:
+  Status start();
+  Status build(const GridVertices& vertices, const Execution& execution) override;
+  Status build(const FacetVertices& facets, const Execution& execution) override;
+  FacetHit closest(const FacetRay& ray) const override;
+  bool occluded(const FacetRay& ray) const override;
+  void closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const override;
+  void occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const override;
+  Box3 box() const override;
+  /// Returns the bytes that Embree has allocated, and those of the grids.
+  std::size_t memory_bytes() const override {
+    return state_.monitor.bytes() + state_.grids.capacity() * sizeof(RTCGrid);
+  }
 
-Result<EmbreeScene> EmbreeScene::make() {
-  auto state = std::make_unique<State>();
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state->monitor);
+ private:
+  FacetState state_;
+};
+
+Status EmbreeFacets::start() {
+  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state_.monitor);
   if (!device) return device.status();
-  state->device = *std::move(device);
-  return EmbreeScene(std::move(state));
-}
-
-Status EmbreeScene::check_size(const GridVertices& vertices) {
-  const std::size_t per_grid = static_cast<std::size_t>(vertices.height) * static_cast<std::size_t>(vertices.width);
-  if (vertices.height > max_vertices_per_side || vertices.width > max_vertices_per_side ||
-      vertices.grids > std::numeric_limits<std::uint32_t>::max() / per_grid)
-    return Status(StatusCode::unsupported, std::to_string(vertices.grids) + " grids of " + std::to_string(per_grid) +
-                                               " vertices are more than the 2^32 vertices of one ray scene");
+  state_.device = *std::move(device);
   return {};
 }
 
-Status EmbreeScene::build(const GridVertices& vertices, const Execution& execution) {
-  State& state = *state_;
+Status EmbreeFacets::build(const GridVertices& vertices, const Execution& execution) {
+  FacetState& state = state_;
   state.scene.reset();
   if (Status status = check_size(vertices); !status.ok()) return status;
   const std::size_t per_grid = static_cast<std::size_t>(vertices.height) * static_cast<std::size_t>(vertices.width);
@@ -113,8 +104,8 @@ Status EmbreeScene::build(const GridVertices& vertices, const Execution& executi
   return {};
 }
 
-Status EmbreeScene::build(const FacetVertices& facets, const Execution& execution) {
-  State& state = *state_;
+Status EmbreeFacets::build(const FacetVertices& facets, const Execution& execution) {
+  FacetState& state = state_;
   state.scene.reset();
   constexpr std::size_t most = FacetHit::nothing;
   const std::size_t triangles = facets.triangles.size() / 3, quads = facets.quads.size() / 4;
@@ -144,57 +135,61 @@ Status EmbreeScene::build(const FacetVertices& facets, const Execution& executio
   return {};
 }
 
-FacetHit EmbreeScene::closest(const FacetRay& ray) const {
+FacetHit EmbreeFacets::closest(const FacetRay& ray) const {
   EmbreeContext context = embree_context();
   RTCRayHit query{};
   query.ray = to_embree(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect(state_->scene.get(), context, Coherence::incoherent, query);
+  intersect(state_.scene.get(), context, Coherence::incoherent, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return {state_->facet(query.hit.geomID, query.hit.primID), query.ray.tfar, query.hit.v,
+  return {state_.facet(query.hit.geomID, query.hit.primID), query.ray.tfar, query.hit.v,
           query.hit.u};  // Embree's u runs along the width
 }
 
-bool EmbreeScene::occluded(const FacetRay& ray) const {
+bool EmbreeFacets::occluded(const FacetRay& ray) const {
   EmbreeContext context = embree_context();
   RTCRay query = to_embree(ray);
-  tessera::occluded(state_->scene.get(), context, Coherence::incoherent, query);
+  tessera::occluded(state_.scene.get(), context, Coherence::incoherent, query);
   return query.tfar < 0;  // -infinity where something was hit
 }
 
-void EmbreeScene::closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const {
+void EmbreeFacets::closest(std::span<const FacetRay> rays, std::span<FacetHit> hits) const {
   EmbreeContext context = embree_context();
   RTCRayHit16 query;
   alignas(64) const Lanes valid = to_embree(rays, query.ray);
   std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
   std::fill(std::begin(query.hit.instID[0]), std::end(query.hit.instID[0]), RTC_INVALID_GEOMETRY_ID);
-  intersect(state_->scene.get(), context, Coherence::coherent, valid.data(), query);
+  intersect(state_.scene.get(), context, Coherence::coherent, valid.data(), query);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     hits[k] = {};
     if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
-    hits[k] = {state_->facet(query.hit.geomID[k], query.hit.primID[k]), query.ray.tfar[k], query.hit.v[k],
+    hits[k] = {state_.facet(query.hit.geomID[k], query.hit.primID[k]), query.ray.tfar[k], query.hit.v[k],
                query.hit.u[k]};
   }
 }
 
-void EmbreeScene::occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const {
+void EmbreeFacets::occluded(std::span<const FacetRay> rays, std::span<std::uint8_t> occluded) const {
   EmbreeContext context = embree_context();
   RTCRay16 query;
   alignas(64) const Lanes valid = to_embree(rays, query);
-  tessera::occluded(state_->scene.get(), context, Coherence::coherent, valid.data(), query);
+  tessera::occluded(state_.scene.get(), context, Coherence::coherent, valid.data(), query);
   for (std::size_t k = 0; k < rays.size(); ++k) occluded[k] = query.tfar[k] < 0;
 }
 
-Box3 EmbreeScene::box() const {
-  if (!state_->scene) return {};
+Box3 EmbreeFacets::box() const {
+  if (!state_.scene) return {};
   RTCBounds bounds;
-  rtcGetSceneBounds(state_->scene.get(), &bounds);
+  rtcGetSceneBounds(state_.scene.get(), &bounds);
   return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
 }
 
-std::size_t EmbreeScene::memory_bytes() const {
-  return state_->monitor.bytes() + state_->grids.capacity() * sizeof(RTCGrid);
+}  // namespace
+
+Result<std::unique_ptr<FacetTree>> make_embree_facets(Isa) {
+  auto tree = std::make_unique<EmbreeFacets>();
+  if (Status status = tree->start(); !status.ok()) return status;
+  return std::unique_ptr<FacetTree>(std::move(tree));
 }
 
 }}  // namespace tessera::abi_0_1
