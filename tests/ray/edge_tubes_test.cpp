@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "ray/batch_support.h"
-#include "ray/embree_world.h"
+#include "ray/frayed_scene.h"
 #include "ray/gaping_shapes.h"
 #include "support/solid_rays.h"
-#include "tessera/ray_embree.h"
 
 namespace tessera::test { namespace {
 
@@ -121,24 +120,6 @@ TEST(EdgeTubes, SharedBordersHaveNone) {
   EXPECT_FALSE(scene.closest(ray({0.5, -1, 1}, {0, 1, 0})).flags.edge);
 }
 
-/// A frayed cube, with rays at its edges.
-struct Frayed {
-  Shape shape = FrayedCube({1e-3}, 7).shape();
-  PatchSet set = value_of(make_patch_set(shape));
-  RayScene scene = value_of(RayScene::make(set));
-
-  std::vector<Ray> at_edges(std::size_t count, std::uint64_t seed) const {
-    Random random(seed);
-    const EdgeTargets targets(shape);
-    std::vector<Ray> rays;
-    while (rays.size() < count) {  // neighbours in packets
-      const Vec3 at = targets.draw(random), eye = Vec3{0.5, 0.5, 0.5} + 3 * normalized(random_direction(random));
-      for (int k = 0; k < 16; ++k) rays.push_back(ray(eye, at + 2e-3 * uniform_vector(random, -1, 1) - eye));
-    }
-    return rays;
-  }
-};
-
 TEST(EdgeTubes, HitsAreTheNearestPointsOfLoops) {
   const Frayed cube;
   const double gap = widest(cube.scene);
@@ -236,27 +217,6 @@ TEST(EdgeTubes, FiltersDecideAboutEdgesToo) {
       EXPECT_EQ(outputs.flags[k].edge, hits[k].flags.edge) << k;
     }
   }
-}
-
-// A scene of the user's own sees edges as well. Its rays are in float.
-TEST(EdgeTubes, AreInScenesOfUsers) {
-  const Frayed cube;
-  const World world;
-  ASSERT_TRUE(attach(cube.scene, world.scene.get()));
-  rtcCommitScene(world.scene.get());
-  std::size_t seams = 0, differ = 0;
-  for (const Ray& given : cube.at_edges(2000, 4)) {
-    const Ray at = in_float(given);
-    const RTCRayHit found = trace(world.scene.get(), at);
-    const Hit hit = cube.scene.closest(at);
-    ASSERT_EQ(found.hit.geomID != nothing, hit.kind == HitKind::hit);
-    if (hit.kind != HitKind::hit) continue;
-    seams += hit.flags.edge;
-    EXPECT_NEAR(found.ray.tfar, hit.t, 1e-6);
-    differ += found.hit.primID != hit.patch;
-  }
-  EXPECT_GT(seams, 200u);
-  EXPECT_LE(differ, seams / 20);  // where two patches are met at one t in float
 }
 
 // Rays along an edge, within its gap, meet it; those beside it, parallel, do not.

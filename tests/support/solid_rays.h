@@ -45,7 +45,7 @@ class EdgeTargets {
   /// The point of one of an edge's faces, at its ends in half of all cases.
   Vec3 draw(Random& random) const {
     const std::uint32_t edge = edges_[random() % edges_.size()];
-    const Interval& range = shape_.edges[edge].range;
+    const tessera::Interval& range = shape_.edges[edge].range;
     const double x = random() % 2 == 0 ? double(random() % 2) : uniform(random, 0, 1);
     const EdgeUse& use = uses_[edge][random() % uses_[edge].size()];
     const ShapeFace& face = shape_.faces[use.face];
