@@ -12,7 +12,7 @@ a line for each family of results and instruction set, a column for each build; 
 column. Fails where one differs. Without builds named, those of the compilers that are installed: g++:-O0 g++:-O1 g++:-O2
 g++:-O3 clang++-14:-O0 clang++-14:-O2 and the newest clang at -O2. Words of FLAGS are separated by commas: g++:-O2,-DNDEBUG
 
-  --rays      rays too (needs Embree)
+  --rays      rays too (by Embree, where it is found)
   --kernels   the vector kernels at that level too; by itself the build compiles them at -O3 whatever else is said
   --jobs N    compile N files at a time (1)
   --keep      keep the builds: each takes some 100 MB

@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-tools/test.sh [--preset dev|asan|tsan|release] [--target NAME]... [-- CTEST-ARGUMENTS...]
+tools/test.sh [--preset dev|plain|asan|tsan|release] [--target NAME]... [-- CTEST-ARGUMENTS...]
 tools/test.sh --fuzz [SECONDS]
 
 Installs missing packages (tools/setup.sh), configures and builds a preset in build/<preset> (dev by default), and runs
