@@ -16,7 +16,7 @@ struct ListSize {
   std::function<void()> resize;  ///< gives the list its size; must not throw
 };
 
-/// Makes room for `count` elements of a vector or string, and for `spare` more. The list must stay where it is. Throws std::bad_alloc.
+/// Makes room for `count` and `spare` elements of a vector or string, which must stay where it is. Throws bad_alloc.
 template <class List>
 ListSize size_of(List& list, std::size_t count, std::size_t spare = 0) {
   list.reserve(saturated_sum(count, spare));

@@ -1,4 +1,4 @@
-// All items of a text. Long texts are read in pieces by several threads, each from where an item seems to begin. A piece
+// All items of a text. Long ones are read in pieces by several threads, each from where an item seems to begin. A piece
 // counts if the one before ends just there; otherwise its text is read again. Errors come from a walk through the text
 // from its begin, which knows the number of each item.
 

@@ -25,7 +25,7 @@ struct FaceRun {
   std::size_t first_triangle, first_quad;  ///< the number of the run's first face, and of the next of the other kind
   std::size_t count;
 };
-/// Returns where runs of equal values end, found by all threads: places behind their last values. Throws std::bad_alloc.
+/// Returns the places behind the last values of runs of equal ones, found by all threads. Throws std::bad_alloc.
 std::vector<std::size_t> run_ends(std::span<const std::uint32_t> values);
 
 /// Calls visit(run) for all faces in the order of the patches, the next triangles or quads with the lower one.
