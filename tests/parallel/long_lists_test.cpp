@@ -15,7 +15,7 @@ TEST(LongLists, HaveTheirSizesAndZeros) {
     std::vector<std::uint8_t> bytes{1, 2, 3};
     std::string text = "ab";
     const ListSize sizes[] = {size_of(floats, count, 1), size_of(bytes, 2 * count + 3), size_of(text, count + 2)};
-    resize(sizes);
+    resize_lists(sizes);
     EXPECT_EQ(floats.size(), count);
     EXPECT_GT(floats.capacity(), count);
     EXPECT_TRUE(std::ranges::all_of(floats, [](float value) { return value == 0; }));

@@ -26,7 +26,7 @@ void add_pieces(std::span<std::byte> memory, std::vector<std::span<std::byte>>& 
 
 }  // namespace
 
-void resize(std::span<const ListSize> lists) {
+void resize_lists(std::span<const ListSize> lists) {
   std::size_t bytes = 0;
   for (const ListSize& list : lists) bytes += list.memory.size();
   if (bytes < piece_bytes) {

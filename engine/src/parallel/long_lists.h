@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 
+#include "base/internal_export.h"
 #include "base/saturated.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -25,6 +26,6 @@ ListSize size_of(List& list, std::size_t count, std::size_t spare = 0) {
 }
 
 /// Gives lists their sizes, by several threads if they are long. Throws std::bad_alloc.
-void resize(std::span<const ListSize> lists);
+TESSERA_INTERNAL_EXPORT void resize_lists(std::span<const ListSize> lists);
 
 }}  // namespace tessera::abi_0_1

@@ -68,7 +68,8 @@ Result<std::string> read_whole(const std::filesystem::path& path) {
   std::size_t used = 0;
   if (regular) {
     const auto size = static_cast<std::size_t>(facts.st_size);
-    resize({{size_of(bytes, size, 1)}});
+    const ListSize sizes[] = {size_of(bytes, size, 1)};
+    resize_lists(sizes);
     if (size >= 2 * piece_bytes && read_pieces(file.number(), bytes) &&
         ::lseek(file.number(), facts.st_size, SEEK_SET) == facts.st_size)
       used = size;

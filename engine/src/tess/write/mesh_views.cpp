@@ -82,7 +82,7 @@ Mesh empty_mesh(const MeshCapacity& capacity, const Vec3& origin, const MeshArra
                             size_of(mesh.patches, triangles),
                             size_of(mesh.quads, saturated_product(4, quads)),
                             size_of(mesh.quad_patches, quads)};
-  resize(sizes);
+  resize_lists(sizes);
   return mesh;
 }
 
