@@ -130,6 +130,27 @@ TEST(LongFiles, ObjectsOfG2) {
   EXPECT_NE(expect_same_reading(parse_g2, g2_text("").substr(0, long_text - 20)), "");
 }
 
+TEST(LongFiles, ObjectsLongerThanAPiece) {
+  std::string knots = "0 0";
+  for (int k = 1; k < 159; ++k) knots += " " + std::to_string(k);
+  std::string points;
+  for (int k = 0; k < 160 * 160; ++k) points += "1.2345678 2.3456789 " + std::to_string(k % 7) + ".4567891\n";
+  std::string text;
+  for (int k = 0; k < 12; ++k) {
+    text += "200 1 0 0\n3 0\n160 2\n" + knots + " 159 159\n160 2\n" + knots + " 159 159\n";
+    text += points;
+  }
+  EXPECT_EQ(expect_same_reading(parse_g2, text), "");
+}
+
+TEST(LongFiles, AMarkWithinTheTextIsAnError) {
+  const BptText good(by_points);
+  std::string text = good.whole();
+  for (std::size_t at = text.find('\n', text.size() / 3); at < text.size() / 2; at = text.find('\n', at + (1 << 16)))
+    text.insert(at + 1, "\xEF\xBB\xBF");
+  EXPECT_NE(expect_same_reading(parse_bpt, text), "");
+}
+
 TEST(LongFiles, AnObjectThatNeverEndsIsReadOnce) {
   // Each line begins what takes all that follows for its points.
   std::string text;

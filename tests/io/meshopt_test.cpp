@@ -177,7 +177,29 @@ TEST_F(PackedFile, FalseStatementsAreErrors) {
   file_["bufferViews"][0]["byteLength"] = packed(0)["count"] = 1 << 24;
   packed(0)["byteStride"] = 4;
   file_["bufferViews"][0]["byteLength"] = 1 << 26;
-  EXPECT_NE(error().find("more than 256 times its packed bytes"), std::string::npos);
+  EXPECT_NE(error().find("more than 64 times its buffers and 16 MiB"), std::string::npos);
+}
+
+TEST_F(PackedFile, ViewsThatShareTheirBytesTakeNoMoreMemoryThanIsStated) {
+  constexpr std::size_t bytes = std::size_t{12} << 20;
+  const std::string zeros = pack_attributes(std::string(bytes, '\0'), 12);
+  packed(0)["byteOffset"] = bytes_.size();
+  packed(0)["byteLength"] = zeros.size();
+  packed(0)["count"] = bytes / 12;
+  file_["bufferViews"][0]["byteLength"] = bytes;
+  bytes_ += zeros;
+  file_["buffers"][0]["byteLength"] = bytes_.size();
+  const std::size_t allowed = (64 * bytes_.size() + (std::size_t{16} << 20)) / bytes;
+  const json accessor = file_["accessors"][0], primitive = file_["meshes"][0]["primitives"][0];
+  for (std::size_t views = 1; views <= allowed; ++views) {
+    EXPECT_EQ(error().find("packed numbers"), std::string::npos) << views;
+    file_["accessors"].push_back(accessor);
+    file_["accessors"].back()["bufferView"] = file_["bufferViews"].size();
+    file_["meshes"][0]["primitives"].push_back(primitive);
+    file_["meshes"][0]["primitives"].back()["attributes"] = {{"POSITION", file_["accessors"].size() - 1}};
+    file_["bufferViews"].push_back(file_["bufferViews"][0]);
+  }
+  EXPECT_NE(error().find("packed numbers take more than 64 times its buffers and 16 MiB"), std::string::npos);
 }
 
 TEST_F(PackedFile, DamagedBytesAreErrorsOrOtherNumbers) {

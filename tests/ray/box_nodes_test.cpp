@@ -115,6 +115,9 @@ void expect_found(const std::vector<Box3>& boxes, const BoxNodes& tree, double o
       for (std::uint32_t box = 0; box < boxes.size(); ++box) {
         const bool is_empty = !(boxes[box].lower.x <= boxes[box].upper.x && boxes[box].lower.y <= boxes[box].upper.y &&
                                 boxes[box].lower.z <= boxes[box].upper.z);
+        if (is_empty) {
+          EXPECT_EQ(alone.count(box) + (together.empty() ? 0 : together[k].count(box)), 0u) << box;
+        }
         if (is_empty || !passes(some[k], boxes[box])) continue;
         ++met;
         EXPECT_EQ(alone.count(box), 1u) << box;

@@ -211,7 +211,7 @@ struct MeshReadOptions {
 ///   lines, skins, morph targets and animations are skipped with a warning.
 ///
 /// Errors: io_error, parse_error, unsupported. Memory: for glTF at most 64 times the file and its buffers plus 16 MiB,
-/// however often nodes place a mesh.
+/// however often nodes place a mesh, and as much for packed numbers.
 Result<Mesh> read_mesh(const std::filesystem::path& path, const MeshReadOptions& options = {});
 
 /// @name Parts of reading and writing

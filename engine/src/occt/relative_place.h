@@ -5,7 +5,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// Returns a place seen from another one: the inverse of `from`, times `place`. Faces and their edges nearly always
+/// Returns the inverse of a place, times `from`: nothing if they are the same. Faces and their edges nearly always
 /// stand at one place, for which OpenCASCADE would multiply and allocate.
 inline TopLoc_Location relative_place(const TopLoc_Location& from, const TopLoc_Location& place) {
   return from == place ? TopLoc_Location() : from.Predivided(place);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <new>
 #include <span>
 
 #include "base/internal_export.h"
@@ -20,7 +21,9 @@ struct ListSize {
 /// Makes room for `count` and `spare` elements of a vector or string, which must stay where it is. Throws bad_alloc.
 template <class List>
 ListSize size_of(List& list, std::size_t count, std::size_t spare = 0) {
-  list.reserve(saturated_sum(count, spare));
+  const std::size_t room = saturated_sum(count, spare);
+  if (room > list.max_size()) throw std::bad_alloc();
+  list.reserve(room);
   const auto resize = [&list, count] { list.resize(count); };
   return {{reinterpret_cast<std::byte*>(list.data()), count * sizeof *list.data()}, resize};
 }

@@ -199,16 +199,17 @@ std::string_view GltfNumbers::unpacked(const JsonValue& packed, std::size_t size
   if (view.count * view.stride != size)
     packed.fail("expected the view's " + std::to_string(size) + " bytes (byteLength), found " +
                 std::to_string(view.count) + " elements of " + std::to_string(view.stride));
-  constexpr std::size_t times = 256, extra = std::size_t{1} << 20;
-  if (size > times * bytes.size() + extra)
-    packed.fail("it takes more than " + std::to_string(times) + " times its packed bytes and 1 MiB",
+  constexpr std::size_t times = 64, extra = std::size_t{16} << 20;
+  const std::size_t limit = times * loaded_bytes_ + extra;
+  if (size > limit - std::min(limit, unpacked_bytes_))
+    packed.fail("the file's packed numbers take more than " + std::to_string(times) + " times its buffers and 16 MiB",
                 StatusCode::unsupported);
   if (!has_meshopt())
     packed.fail("this build of Tessera does not unpack glTF: it lacks meshoptimizer", StatusCode::unsupported);
   std::string elements = unpack(view, bytes);
   if (elements.size() != size) packed.fail("the packed bytes are damaged");
   decoded_.push_back(std::make_unique<const std::string>(std::move(elements)));
-  loaded_bytes_ += size;
+  unpacked_bytes_ += size;
   return unpacked_[packed.place()] = *decoded_.back();
 }
 

@@ -60,7 +60,7 @@ class GltfNumbers {
   std::map<std::size_t, std::string_view> buffers_;                  // by index
   std::map<std::size_t, std::string_view> unpacked_;                 // views, by place in the text
   std::vector<std::unique_ptr<const std::string>> decoded_;
-  std::size_t loaded_bytes_ = 0;
+  std::size_t loaded_bytes_ = 0, unpacked_bytes_ = 0;
 };
 
 /// The member `key` of an object; throws if `object` is none or lacks it.

@@ -10,11 +10,19 @@ namespace {
 const unsigned char* bytes_of(std::string_view text) { return reinterpret_cast<const unsigned char*>(text.data()); }
 unsigned char* bytes_of(std::string& text) { return reinterpret_cast<unsigned char*>(text.data()); }
 
+/// Sets the versions of the streams that the extension has, once: they are settings of the process, and newer libraries
+/// begin with others.
+void set_versions() {
+  static const bool is_done = (meshopt_encodeVertexVersion(0), meshopt_encodeIndexVersion(1), true);
+  (void)is_done;
+}
+
 }  // namespace
 
 bool has_meshopt() { return true; }
 
 std::string pack_attributes(std::string_view elements, std::size_t stride) {
+  set_versions();
   const std::size_t count = elements.size() / stride;
   std::string packed(meshopt_encodeVertexBufferBound(count, stride), '\0');
   packed.resize(meshopt_encodeVertexBuffer(bytes_of(packed), packed.size(), elements.data(), count, stride));
@@ -23,8 +31,7 @@ std::string pack_attributes(std::string_view elements, std::size_t stride) {
 }
 
 std::string pack_triangles(std::span<const std::uint32_t> indices) {
-  static const bool has_version = (meshopt_encodeIndexVersion(1), true);  // that of the extension
-  (void)has_version;
+  set_versions();
   const std::size_t vertices = indices.empty() ? 0 : std::size_t{std::ranges::max(indices)} + 1;
   std::string packed(meshopt_encodeIndexBufferBound(indices.size(), vertices), '\0');
   packed.resize(meshopt_encodeIndexBuffer(bytes_of(packed), packed.size(), indices.data(), indices.size()));

@@ -40,7 +40,9 @@ class ItemPieces {
     const std::size_t count = (text_.size() - at_) / piece_bytes,
                       at_once = 8 * static_cast<std::size_t>(arena_threads());
     bool is_well = true;
-    for (std::size_t first = 0, begin = at_; first < count && is_well; first += at_once) {
+    // Where no piece of a round holds a whole item, items are long: the rest is read by one thread.
+    has_fitted_ = true;
+    for (std::size_t first = 0, begin = at_; first < count && is_well && has_fitted_; first += at_once) {
       std::vector<ItemPiece> pieces(std::min(at_once, count - first));
       const Status status = parallel_for(pieces.size(), 1, {}, [&](std::size_t k, std::size_t) {
         const std::size_t from = begin + (first + k) * piece_bytes,
@@ -48,6 +50,7 @@ class ItemPieces {
         pieces[k] = piece_at(first + k == 0 ? begin : likely_item(from, to), to);
       });
       if (!status.ok()) return status;
+      has_fitted_ = false;
       is_well = join(pieces);
     }
     if (!is_well || !ends_well()) return std::optional<std::vector<ModelSurface>>();
@@ -55,14 +58,14 @@ class ItemPieces {
   }
 
  private:
-  /// A cursor in the text's first `size` bytes. Requires a place behind a byte order mark.
-  TextCursor cursor_at(std::size_t place, std::size_t size) const {
-    TextCursor cursor(text_.substr(0, size), name_);
-    const std::size_t at = size - cursor.remaining();
-    cursor.skip(text_.substr(at, place - at));
-    return cursor;
+  /// A cursor in a part of the text. Its lines are counted from `begin` on: errors of pieces are not told, and must not
+  /// take the longer the farther back they are.
+  TextCursor cursor_at(std::size_t begin, std::size_t end) const {
+    return TextCursor(text_.substr(begin, end - begin), name_);
   }
-  TextCursor cursor_at(std::size_t place) const { return cursor_at(place, text_.size()); }
+  TextCursor cursor_at(std::size_t begin) const { return cursor_at(begin, text_.size()); }
+  /// Whether what would be a byte order mark at a file's begin stands here, where it is an error.
+  bool has_mark(std::size_t place) const { return text_.substr(place).starts_with("\xEF\xBB\xBF"); }
 
   /// Reads a piece. None reads far into what others read, whatever it takes for an item.
   ItemPiece piece_at(std::size_t begin, std::size_t limit) const {
@@ -73,7 +76,7 @@ class ItemPieces {
   /// Where an item seems to begin a line, from `from` on; `limit` if none does before it.
   std::size_t likely_item(std::size_t from, std::size_t limit) const {
     for (std::size_t at = from; (at = text_.find('\n', at)) < limit;) {
-      TextCursor cursor = cursor_at(at);
+      TextCursor cursor = cursor_at(at);  // at the end of a line
       cursor.skip_space();
       at = text_.size() - cursor.remaining();
       if (at >= limit) break;
@@ -84,10 +87,10 @@ class ItemPieces {
 
   /// Reads items from one on, until one begins at `limit` or later, or does not end within the first `size` bytes.
   ItemPiece read_piece(std::size_t begin, std::size_t limit, std::size_t size) const {
-    ItemPiece piece{.begin = begin, .end = begin};
+    ItemPiece piece{.begin = begin, .end = begin, .has_failed = has_mark(begin)};
     const std::unique_ptr<ItemReader> reader = reader_.for_rest();
     for (TextCursor cursor = cursor_at(begin, size);
-         piece.end < limit && reader->more(cursor, piece.surfaces.size());) {
+         !piece.has_failed && piece.end < limit && reader->more(cursor, piece.surfaces.size());) {
       Result<ReadItem> item = reader->read(cursor, piece.surfaces.size(), text_.size() - size);
       if (cursor.at_end() && size < text_.size()) break;
       piece.has_failed = !item || !item->surface || item->swapped;
@@ -105,7 +108,9 @@ class ItemPieces {
     for (ItemPiece& piece : pieces) {
       if (piece.begin < at_) continue;
       if (piece.begin > at_ && !add(read_piece(at_, piece.begin, text_.size()))) return false;
-      if (piece.begin == at_ && !add(std::move(piece))) return false;
+      if (piece.begin != at_) continue;
+      has_fitted_ |= !piece.surfaces.empty();
+      if (!add(std::move(piece))) return false;
     }
     return true;
   }
@@ -126,7 +131,8 @@ class ItemPieces {
 
   ItemReader& reader_;
   std::string_view text_, name_;
-  std::size_t at_ = 0;  ///< the end of what is joined
+  std::size_t at_ = 0;       ///< the end of what is joined
+  bool has_fitted_ = false;  ///< whether a piece of the last round was joined
   std::vector<ModelSurface> surfaces_;
 };
 

@@ -15,6 +15,7 @@ unsigned lanes_at_most(const float* a, const float* b) {
 
 /// Tests the box of a child for all rays.
 TreePacket::Waiting meet_child(const TreeNode& node, int k, const TreePacket& packet) {
+  if (!(node.side[0][0][k] <= node.side[1][0][k])) return {node.child[k], 0, 0};  // empty
   using L = Lanes<float>;
   using Batch = L::Batch;
   alignas(64) float enters[TreePacket::size], leaves[TreePacket::size];

@@ -14,12 +14,14 @@ namespace {
 /// Whether the control points of a piece turn to one side alone. So does the curve, as weights are positive; the piece
 /// is monotone, so it turns by at most a right angle.
 bool is_convex(const TrimPiece& piece) {
-  double least = 0, most = 0;
+  double least = 0, most = 0, before_u = 0, before_v = 0;
   const auto& at = piece.curve.points;
-  for (std::size_t k = 2; k < at.size(); ++k) {
-    const double turn =
-        (at[k - 1].u - at[k - 2].u) * (at[k].v - at[k - 1].v) - (at[k - 1].v - at[k - 2].v) * (at[k].u - at[k - 1].u);
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    const double u = at[k].u - at[k - 1].u, v = at[k].v - at[k - 1].v;
+    if (u == 0 && v == 0) continue;  // a point that is there twice
+    const double turn = before_u * v - before_v * u;
     least = std::min(least, turn), most = std::max(most, turn);
+    before_u = u, before_v = v;
   }
   return least == 0 || most == 0;
 }
