@@ -67,6 +67,7 @@ struct HitFlags {
   /// the point of a face's loop there that is nearest to the ray. Hits of RayScene::all() are those of the ray moved
   /// sideways, out of the reach of edges. See RayScene::edge_gaps().
   bool edge : 1 = false;
+  bool reserved : 1 = false;  ///< always false, so that no bit of the byte is left to chance
 };
 
 /// Where a ray meets a surface. For a miss or an invalid ray, only `kind` is meaningful; for a miss in exact mode also

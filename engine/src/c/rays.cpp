@@ -1,6 +1,7 @@
 // Rays of the C interface.
 
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "c/objects.h"
@@ -12,7 +13,7 @@ namespace tessera { inline namespace abi_0_1 { namespace {
 
 static_assert(sizeof(HitKind) == 1 && static_cast<int>(HitKind::hit) == TSR_HIT &&
               static_cast<int>(HitKind::invalid_ray) == TSR_INVALID_RAY);
-static_assert(sizeof(HitFlags) == 1);
+static_assert(sizeof(HitFlags) == 1 && std::has_unique_object_representations_v<HitFlags>);  // no other bits
 
 template <class T>
 CStatus rays_of(const tsr_rays& from, RayViews<T>& rays) {
