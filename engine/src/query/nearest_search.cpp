@@ -302,7 +302,7 @@ void NearestSearch::offer(const NearCandidate& candidate) {
   reach_ = std::min(reach_, (best.distance + outcome_.slack) * pieces_.frame().scale);
   if (other.patch == no_id || length(other.position - best.position) * pieces_.frame().scale <= min_apart) return;
   if (tie_count_ == max_ties) {  // the farthest is of the least use
-    auto* const farthest = std::ranges::max_element(ties_, {}, &NearCandidate::distance);
+    const auto farthest = std::ranges::max_element(ties_, {}, &NearCandidate::distance);
     if (other.distance < farthest->distance) *farthest = other;
   } else {
     ties_[tie_count_++] = other;

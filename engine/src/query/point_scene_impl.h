@@ -99,7 +99,7 @@ Status PointScene::Impl::for_points(std::size_t count, const Execution& executio
     }
     const std::size_t size = end - begin;
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(size));
-    const auto place = [&](std::size_t k) { return begin + (order[k] & 0xffffffff); };
+    const auto place = [&](std::size_t k) { return begin + static_cast<std::uint32_t>(order[k]); };
     for (std::size_t k = 0; k < size + FetchAhead::most_ahead && !is_cancelled(); ++k) {
       if (k < size)
         ahead.push(k, frame.to_scene(position(place(k))));
