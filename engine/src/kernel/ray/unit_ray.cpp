@@ -13,7 +13,7 @@ namespace {
 #include "kernel/ray/nearest_kernel.inl.h"
 #include "kernel/ray/ray_kernel.inl.h"
 #include "kernel/ray/tree_kernel.inl.h"
-#if !defined(__SSE2__) || defined(__FMA__)
+#if defined(__FMA__) || defined(__aarch64__)
 #include "kernel/ray/ray_line_kernel.inl.h"
 #include "kernel/ray/ray_packet_kernel.inl.h"
 #include "kernel/ray/ray_polish_kernel.inl.h"
