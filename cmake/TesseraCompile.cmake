@@ -48,7 +48,7 @@ function(tessera_floor name)
   get_filename_component(engine ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../engine ABSOLUTE)
   cmake_parse_arguments(FLOOR "" "LEVEL" "SOURCES;BELOW" ${ARGN})
   if(TESSERA_IS_WASM)  # a page loads all of it first: code for speed only where most of the time goes
-    set(FLOOR_LEVEL -Os)
+    set(FLOOR_LEVEL -Oz)
     if(name MATCHES "^(block|eval|plane|tess|ray)$")
       set(FLOOR_LEVEL -O2)
     endif()

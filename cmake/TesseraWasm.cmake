@@ -32,7 +32,7 @@ target_compile_definitions(muparser PUBLIC MUPARSER_STATIC)
 target_compile_options(muparser PRIVATE -w -Os)
 
 # tessera_wasm_module(): tessera.wasm, a reactor that exports the functions of tessera_c*.h that this build has, malloc()
-# and free(). It imports functions of WASI, which tools/wasm/tessera.mjs answers.
+# and free(). It imports functions of WASI and of its host, which tests/wasm/module.mjs answers.
 function(tessera_wasm_module)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/engine/include/tessera/tessera_c*.h)
   set(exports malloc free)

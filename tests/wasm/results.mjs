@@ -4,6 +4,9 @@ import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 
 const relative = 1, warningText = 1;  // TSR_PLAN_RELATIVE, TSR_TEXT_WARNING
+const rayCount = 200;
+// Members of tsr_hits_out in the order of results.c, with the bytes of a ray.
+const hitParts = [['t', 8], ['patch_uv', 16], ['patch', 4], ['kind', 1], ['flags', 1]];
 
 function meshOf(tessera, set) {
   const options = tessera.struct('tsr_plan_options', 'tsr_plan_defaults');
@@ -40,6 +43,50 @@ function meshOf(tessera, set) {
   }
 }
 
+/** Rays from points in and around the set's box to points in it, as aim() of results.c makes them. */
+function raysOf(tessera, set) {
+  const info = tessera.struct('tsr_set_info');
+  tessera.call('tsr_set_describe', set, info.at);
+  const box = (member) => Array.from(new Float32Array(new Float64Array(
+    tessera.bytes(tessera.place(info, member).at, 24).slice().buffer)));
+  const low = box('low'), high = box('high');
+  tessera.free(info.at);
+  let state = 1;
+  const random = () => (state = (state * 48271) % 2147483647) / 2147483647;
+  const origin = new Float64Array(3 * rayCount), direction = new Float64Array(3 * rayCount);
+  for (let k = 0; k < 3 * rayCount; ++k) {
+    const size = high[k % 3] - low[k % 3], from = random(), to = random();
+    origin[k] = low[k % 3] + size * (3 * from - 1);
+    direction[k] = low[k % 3] + size * to - origin[k];
+  }
+  return { origin, direction };
+}
+
+/** The closest hits of these rays: an array of bytes for each of `hitParts`. */
+function hitsOf(tessera, set) {
+  const { origin, direction } = raysOf(tessera, set);
+  const scene = tessera.make('tsr_scene_new', set, 0, 0);
+  const rays = tessera.struct('tsr_rays'), out = tessera.struct('tsr_hits_out');
+  const memory = [];
+  const view = (struct, member, at) => {
+    memory.push(at);
+    tessera.set(struct, `${member}.data`, at);
+    tessera.set(struct, `${member}.count`, rayCount);
+    return at;
+  };
+  try {
+    for (const struct of [rays, out]) tessera.set(struct, 'is_double', 1);
+    view(rays, 'origin', tessera.copy(new Uint8Array(origin.buffer)));
+    view(rays, 'direction', tessera.copy(new Uint8Array(direction.buffer)));
+    const places = hitParts.map(([member, bytes]) => view(out, member, tessera.allocate(bytes * rayCount)));
+    tessera.call('tsr_scene_closest', scene, rays.at, out.at, 0);
+    return hitParts.map(([, bytes], k) => tessera.bytes(places[k], bytes * rayCount).slice());
+  } finally {
+    tessera.free(rays.at, out.at, ...memory);
+    tessera.exports.tsr_release(scene);
+  }
+}
+
 function warningsOf(tessera, model) {
   const info = tessera.struct('tsr_model_info');
   tessera.call('tsr_model_describe', model, info.at);
@@ -50,7 +97,7 @@ function warningsOf(tessera, model) {
   return text;
 }
 
-/** Reads and meshes a file by the module: { code, message }, or { warnings, positions, normals, corners, glb }. */
+/** Reads and meshes a file by the module: { code, message }, or { warnings, positions, normals, corners, glb, hits } */
 export function resultOf(tessera, path, bytes = readFileSync(path)) {
   const content = tessera.copy(bytes), name = tessera.copy(new TextEncoder().encode(basename(path)));
   const handles = [];
@@ -60,7 +107,7 @@ export function resultOf(tessera, path, bytes = readFileSync(path)) {
     const set = tessera.make('tsr_set_new', model, 0, 0);
     handles.push(set);
     const mesh = meshOf(tessera, set);
-    return { warnings: warningsOf(tessera, model), ...mesh };
+    return { warnings: warningsOf(tessera, model), ...mesh, hits: hitsOf(tessera, set) };
   } catch (error) {
     if (error.code === undefined) throw error;
     return { code: error.code, message: error.message };
@@ -82,10 +129,10 @@ export function nativeResults(program, paths) {
     const line = out.indexOf(10, at), words = out.toString('utf8', at, line).split(' ');
     at = line + 1;
     if (words[0] === 'error') return { code: Number(words[1]), message: take(Number(words[2])).toString() };
-    const [warnings, vertices, triangles, glb] = words.slice(1).map(Number);
+    const [warnings, vertices, triangles, glb, rays] = words.slice(1).map(Number);
     return {
       warnings: take(warnings).toString(), positions: take(12 * vertices), normals: take(12 * vertices),
-      corners: take(12 * triangles), glb: take(glb),
+      corners: take(12 * triangles), glb: take(glb), hits: hitParts.map(([, bytes]) => take(bytes * rays)),
     };
   });
 }
@@ -93,22 +140,38 @@ export function nativeResults(program, paths) {
 function floatsOf(bytes) {
   return new Float32Array(Uint8Array.from(bytes).buffer);
 }
+function doublesOf(bytes) {
+  return new Float64Array(Uint8Array.from(bytes).buffer);
+}
+
+/** How far numbers are apart at most; NaN where there are more in one list. */
+function distanceOf(found, wanted) {
+  if (found.length !== wanted.length) return NaN;
+  return found.reduce((most, x, k) => Math.max(most, Object.is(x, wanted[k]) ? 0 : Math.abs(x - wanted[k])), 0);
+}
 
 /**
  * Compares two results. `fault`: the first thing in which they differ that must be the same; null if there is none.
- * `isSame`: whether every byte is. Normals may differ by 2^-40, and with them the .glb, because glibc does not round
- * every sine and power correctly: what differs are components of normals that are 0, and the last bit of an origin.
+ * `isSame`: whether every byte of the mesh is; `hasSameHits`: whether every byte of the hits is. Normals, and t, u and
+ * v of hits, may differ by 2^-40, and with normals the .glb, where control points have other last bits: glibc does not
+ * round every sine and power correctly, and the long double that some surfaces are converted in has more bits here.
  */
 export function comparison(found, wanted) {
-  const faulty = (fault) => ({ fault, isSame: false });
+  const faulty = (fault) => ({ fault, isSame: false, hasSameHits: false });
   for (const part of ['code', 'message', 'warnings'])
     if (found[part] !== wanted[part]) return faulty(`${part} is ${found[part]}, natively ${wanted[part]}`);
-  if (found.code !== undefined) return { fault: null, isSame: true };
+  if (found.code !== undefined) return { fault: null, isSame: true, hasSameHits: true };
   for (const part of ['positions', 'corners'])
     if (Buffer.compare(found[part], wanted[part]) !== 0) return faulty(`${part} have other bytes than natively`);
-  const normals = floatsOf(found.normals), others = floatsOf(wanted.normals);
-  if (normals.length !== others.length) return faulty('there are more or fewer normals than natively');
-  const apart = normals.reduce((most, x, k) => Math.max(most, Object.is(x, others[k]) ? 0 : Math.abs(x - others[k])), 0);
+  const apart = distanceOf(floatsOf(found.normals), floatsOf(wanted.normals));
   if (!(apart <= 2 ** -40)) return faulty(`normals differ by ${apart}`);
-  return { fault: null, isSame: apart === 0 && Buffer.compare(found.glb, wanted.glb) === 0 };
+  let hasSameHits = true;
+  for (const [k, [part, bytes]] of hitParts.entries()) {
+    if (Buffer.compare(found.hits[k], wanted.hits[k]) === 0) continue;
+    hasSameHits = false;
+    if (bytes < 8) return faulty(`${part} of hits has other bytes than natively`);
+    const most = distanceOf(doublesOf(found.hits[k]), doublesOf(wanted.hits[k]));
+    if (!(most <= 2 ** -40)) return faulty(`${part} of hits differs by ${most}`);
+  }
+  return { fault: null, isSame: apart === 0 && Buffer.compare(found.glb, wanted.glb) === 0, hasSameHits };
 }
