@@ -96,7 +96,8 @@ async function checkMemory() {
       return { message: error.message };
     }
   })();
-  report(/memory/.test(full.message ?? ''), `without memory: "${full.message}"`);
+  const outOfMemory = 12;  // TSR_OUT_OF_MEMORY
+  report(full.code === outOfMemory, `without memory: ${full.code}, "${full.message}"`);
   tessera.free(...taken);
   const [wanted] = nativeResults(program, [path]);
   report(comparison(resultOf(tessera, path), wanted).isSame, 'the module goes on once there is memory again');

@@ -26,6 +26,16 @@ struct EdgePlace {
   double along;
 };
 
+/// Calls visit(k) for each k below `count`, on all threads.
+template <class Visit>
+void for_all(std::size_t count, const Visit& visit) {
+  constexpr std::size_t piece = 256;
+  const Status status = parallel_for(count, piece, {}, [&](std::size_t begin, std::size_t end) {
+    for (; begin < end; ++begin) visit(begin);
+  });
+  if (!status.ok()) throw std::bad_alloc();
+}
+
 class Welder {
  public:
   Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, const WeldRules& rules, SharedEdges& edges)
@@ -76,15 +86,6 @@ class Welder {
     return is_f64(border) == is_f64(other) ? comes_before(curve(border), curve(other)) : is_f64(border);
   }
 
-  /// Calls visit(k) for each k below `count`, on all threads.
-  template <class Visit>
-  static void for_all(std::size_t count, const Visit& visit) {
-    constexpr std::size_t piece = 256;
-    const Status status = parallel_for(count, piece, {}, [&](std::size_t begin, std::size_t end) {
-      for (; begin < end; ++begin) visit(begin);
-    });
-    if (!status.ok()) throw std::bad_alloc();
-  }
   /// Calls visit(border, edge) for borders of patches with an area.
   template <class Visit>
   void for_borders(Visit visit) const {
