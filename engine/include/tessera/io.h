@@ -206,9 +206,9 @@ struct MeshReadOptions {
 /// - .obj, .ply and .stl (binary or ascii). Polygons are split as fans. Corners of triangles in .stl become one vertex
 ///   where their bits are equal.
 /// - .glb and .gltf: glTF 2.0, all triangles of the default scene, placed by its nodes; the first mesh's translation is
-///   the origin. Normals and texture coordinates are kept if all triangles have them. Buffers may lie beside the file or
-///   below, but not behind links out of its folder. EXT_meshopt_compression is read, sparse accessors are errors; points,
-///   lines, skins, morph targets and animations are skipped with a warning.
+///   the origin. Normals and texture coordinates are kept if all triangles have them. Buffers may lie beside the file
+///   or below, but not behind links out of its folder. EXT_meshopt_compression is read, sparse accessors are errors;
+///   points, lines, skins, morph targets and animations are skipped with a warning.
 ///
 /// Errors: io_error, parse_error, unsupported. Memory: for glTF at most 64 times the file and its buffers plus 16 MiB,
 /// however often nodes place a mesh, and as much for packed numbers.
