@@ -71,15 +71,15 @@ std::size_t EmbreeMonitor::bytes() const {
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(bytes_.load(), 0));
 }
 
-Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa) {
+Status make_device(EmbreeMonitor& monitor, Owned<RTCDevice, DeviceRelease>& device, std::optional<Isa> isa) {
   // No thread is started or bound to a core: the work runs in the caller's arena.
   std::string options = "verbose=0,start_threads=0,set_affinity=0";
   if (isa && *isa != Isa::neon64) options += ",isa=" + std::string(name(*isa));
-  Owned<RTCDevice, DeviceRelease> device(rtcNewDevice(options.c_str()));
+  device.reset(rtcNewDevice(options.c_str()));
   if (!device) return Status(status_code(rtcGetDeviceError(nullptr)), "Embree: no device could be made");
   rtcSetDeviceErrorFunction(device.get(), &EmbreeMonitor::on_error, &monitor);
   rtcSetDeviceMemoryMonitorFunction(device.get(), &EmbreeMonitor::on_memory, &monitor);
-  return device;
+  return {};
 }
 
 Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution) {

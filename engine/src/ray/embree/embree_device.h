@@ -36,7 +36,7 @@ class EmbreeMonitor {
   std::size_t bytes() const;
 
  private:
-  friend Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa);
+  friend Status make_device(EmbreeMonitor& monitor, Owned<RTCDevice, DeviceRelease>& device, std::optional<Isa> isa);
   friend Status commit(RTCScene scene, EmbreeMonitor& monitor, const Execution& execution);
   static void on_error(void* self, RTCError code, const char* text);
   static bool on_memory(void* self, ssize_t bytes, bool);
@@ -50,7 +50,7 @@ class EmbreeMonitor {
 
 /// Makes a device that starts no thread and binds none. `isa` limits Embree's own kernels, by default to the machine's
 /// best. The monitor must outlive the device. Errors: internal, out_of_memory.
-Result<Owned<RTCDevice, DeviceRelease>> make_device(EmbreeMonitor& monitor, std::optional<Isa> isa = {});
+Status make_device(EmbreeMonitor& monitor, Owned<RTCDevice, DeviceRelease>& device, std::optional<Isa> isa = {});
 
 /// Commits a scene in the caller's arena, for any rounding mode of the caller's thread. Errors: cancelled, Embree's
 /// own.

@@ -70,12 +70,7 @@ class EmbreeFacets final : public FacetTree {
   FacetState state_;
 };
 
-Status EmbreeFacets::start() {
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state_.monitor);
-  if (!device) return device.status();
-  state_.device = *std::move(device);
-  return {};
-}
+Status EmbreeFacets::start() { return make_device(state_.monitor, state_.device); }
 
 Status EmbreeFacets::build(const GridVertices& vertices, const Execution& execution) {
   FacetState& state = state_;

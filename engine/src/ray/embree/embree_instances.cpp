@@ -65,12 +65,7 @@ class EmbreeInstances final : public InstanceTree {
   InstanceState state_;
 };
 
-Status EmbreeInstances::start() {
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state_.monitor);
-  if (!device) return device.status();
-  state_.device = *std::move(device);
-  return {};
-}
+Status EmbreeInstances::start() { return make_device(state_.monitor, state_.device); }
 
 Status EmbreeInstances::build(std::vector<Box3> boxes, const Execution& execution) {
   InstanceState& state = state_;

@@ -111,11 +111,8 @@ class EmbreeLeaves final : public LeafTree {
 
 /// Makes the device; `isa` is for Embree as well.
 Status EmbreeLeaves::start(Isa isa) {
-  Result<Owned<RTCDevice, DeviceRelease>> device = make_device(state_.monitor, isa);
-  if (!device) return device.status();
-  state_.device = *std::move(device);
   state_.tracer.kernels = &ray_kernels(isa);
-  return {};
+  return make_device(state_.monitor, state_.device, isa);
 }
 
 Status EmbreeLeaves::build(const TracedLeaves& leaves, bool follows, const Execution& execution) {
