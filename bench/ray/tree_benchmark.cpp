@@ -15,6 +15,7 @@
 #include "ray/tree/ray_trees.h"
 #include "stopwatch.h"
 #include "suite.h"
+#include "support/with_trees.h"
 #include "tessera/ray_scene.h"
 #include "timing.h"
 #include "torus_rays.h"
@@ -25,18 +26,7 @@ using namespace tessera;
 using bench::ray_count;
 using bench::Stopwatch;
 using bench::TorusRays;
-
-/// Makes scenes of some trees until the end of its scope.
-class WithTrees {
- public:
-  explicit WithTrees(const RayTrees& trees) : before_(ray_trees()) { use_ray_trees(&trees); }
-  ~WithTrees() { use_ray_trees(&before_); }
-  WithTrees(const WithTrees&) = delete;
-  WithTrees& operator=(const WithTrees&) = delete;
-
- private:
-  const RayTrees& before_;
-};
+using test::WithTrees;
 
 /// A torus, and eight of it side by side, turned.
 struct TreeScenes {

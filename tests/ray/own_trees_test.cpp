@@ -7,22 +7,11 @@
 #include "ray/tree/ray_trees.h"
 #include "ray_support.h"
 #include "support/torus.h"
+#include "support/with_trees.h"
 #include "tess_trim/trimmed_face.h"
 #include "tessera/bezier_operations.h"
 
 namespace tessera::test { namespace {
-
-/// Makes scenes of some trees until the end of its scope.
-class WithTrees {
- public:
-  explicit WithTrees(const RayTrees& trees) : before_(ray_trees()) { use_ray_trees(&trees); }
-  ~WithTrees() { use_ray_trees(&before_); }
-  WithTrees(const WithTrees&) = delete;
-  WithTrees& operator=(const WithTrees&) = delete;
-
- private:
-  const RayTrees& before_;
-};
 
 /// A scene of each kind of trees.
 struct TreePair {
