@@ -33,7 +33,7 @@
 #   OpenSubdiv        libosd-dev 3.5
 #   SISL              libsisl-dev 4.6             AGPL: linked by one program of its own, which links nothing of Tessera
 
-# What the core links for its loops.
+# The library of threads that the core links for its loops.
 set(tessera_threads)
 if(TESSERA_USE_TBB)
   find_package(TBB 2021 REQUIRED)

@@ -107,7 +107,7 @@ Twofold alternating_series(Twofold x, int first) {
 struct SineCosine {
   Twofold sine, cosine;
 };
-/// Of an angle of at most pi / 4, or little more.
+/// The sine and cosine of an angle of at most pi / 4, or little more.
 SineCosine small_sine_cosine(Twofold angle) { return {alternating_series(angle, 1), alternating_series(angle, 0)}; }
 
 extern "C" int __rem_pio2(double x, double* rest);  // musl's

@@ -82,7 +82,7 @@ std::set<std::uint32_t> visited(const BoxNodes& tree, const RayLine& line, const
   }
 }
 
-/// The same for lines of a packet.
+/// The boxes that a packet of lines visits, line by line.
 std::vector<std::set<std::uint32_t>> visited_together(const BoxNodes& tree, std::span<const RayLine> lines,
                                                       const kernel::RayPacketKernels& kernels) {
   kernel::TreePacket walk;

@@ -43,7 +43,7 @@ std::size_t size_of_component(std::size_t type) {
   }
 }
 
-/// What the extension EXT_meshopt_compression states of a view (section "JSON schema updates").
+/// Reads the members that EXT_meshopt_compression adds to a view (section "JSON schema updates").
 MeshoptView meshopt_view(const JsonValue& packed) {
   MeshoptView view;
   view.count = read_count(member(packed, "count"));

@@ -28,7 +28,7 @@ std::string pack_attributes(std::string_view elements, std::size_t stride);
 /// before. Requires has_meshopt(). Throws std::bad_alloc.
 std::string pack_triangles(std::span<const std::uint32_t> indices);
 
-/// What a view of a file states of its packed elements.
+/// The kind, number and size of a view's packed elements.
 struct MeshoptView {
   MeshoptMode mode = MeshoptMode::attributes;
   MeshoptFilter filter = MeshoptFilter::none;

@@ -119,7 +119,7 @@ bool any(batch_bool<T> mask) {
 
 }  // namespace xsimd
 
-/// What floats and doubles share.
+/// Operations that are alike for floats and doubles.
 template <class T>
 struct WasmLanes {
   using Scalar = T;

@@ -22,11 +22,11 @@ struct RayTrees {
 /// The library's own, in every build.
 const RayTrees& own_ray_trees();
 
-/// Those that this build prefers: Embree's (ray/embree/preferred_trees_embree.cpp), or where it is built without Embree
-/// its own (ray/tree/preferred_trees_own.cpp).
+/// The trees that this build prefers: Embree's (ray/embree/preferred_trees_embree.cpp), or without Embree its own
+/// (ray/tree/preferred_trees_own.cpp).
 const RayTrees& preferred_ray_trees();
 
-/// Those that scenes are made with from now on.
+/// The trees that scenes are made with from now on.
 const RayTrees& ray_trees();
 /// Chooses these, for all threads; null: the preferred ones. For tests and benchmarks. `trees` must outlive all calls.
 void use_ray_trees(const RayTrees* trees);
