@@ -103,7 +103,7 @@ if(TESSERA_BUILD_C)
   tessera_install_python()
 else()
   list(APPEND left_out PATTERN "tessera_c.h" EXCLUDE PATTERN "tessera_c_files.h" EXCLUDE
-    PATTERN "tessera_c_queries.h" EXCLUDE)
+    PATTERN "tessera_c_shapes.h" EXCLUDE PATTERN "tessera_c_queries.h" EXCLUDE)
 endif()
 if(TESSERA_HAS_CAD_READER)
   install(TARGETS tessera_cad_reader RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera COMPONENT tessera-cad-reader)

@@ -32,7 +32,7 @@ target_compile_definitions(muparser PUBLIC MUPARSER_STATIC)
 target_compile_options(muparser PRIVATE -w -Os)
 
 # tessera_wasm_module(): tessera.wasm, a reactor that exports the functions of tessera_c*.h that this build has, malloc()
-# and free(). It imports functions of WASI and of its host, which tests/wasm/module.mjs answers.
+# and free(). It imports functions of WASI and of its host, which tools/npm/src/host.js answers.
 function(tessera_wasm_module)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/engine/include/tessera/tessera_c*.h)
   set(exports malloc free)
@@ -53,6 +53,16 @@ function(tessera_wasm_module)
   # traps instead of writing over data.
   target_link_options(tessera_wasm PRIVATE -mexec-model=reactor LINKER:--gc-sections LINKER:--strip-all
     LINKER:--stack-first LINKER:-z,stack-size=4194304 LINKER:--initial-memory=16777216 LINKER:--max-memory=2147483648 ${exports})
+
+  # The package for npm, whole in the folder npm: tools/npm with the module, and the layout of its structs.
+  set(package ${PROJECT_BINARY_DIR}/npm)
+  set(sources ${PROJECT_SOURCE_DIR}/tools/npm)
+  find_program(NODE node)
+  add_custom_target(tessera_npm DEPENDS tessera_wasm COMMENT "Making ${package}" VERBATIM
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${package}
+    COMMAND ${CMAKE_COMMAND} -E copy_directory ${sources} ${package}
+    COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_FILE:tessera_wasm> ${PROJECT_SOURCE_DIR}/LICENSE ${package}
+    COMMAND ${NODE} ${sources}/layout.mjs ${PROJECT_SOURCE_DIR}/engine/include/tessera ${package}/src/layout.js)
 
   # The kernels alone, for tests/wasm.
   set(jobs tessera_wasm_kernel_jobs)

@@ -33,7 +33,7 @@ for program in cc nm abidw abidiff; do
     exit 77
   fi
 done
-for file in "$library" "$include"/tessera/tessera_c{,_files,_queries}.h; do
+for file in "$library" "$include"/tessera/tessera_c{,_files,_shapes,_queries}.h; do
   if [[ ! -f $file ]]; then
     echo "tools/c_abi.sh: expected a file, found none: \"$file\"" >&2
     exit 2
@@ -43,7 +43,7 @@ done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 {
-  printf '#include "tessera/tessera_c_%s.h"\n' files queries
+  printf '#include "tessera/tessera_c_%s.h"\n' files shapes queries
   nm -D --defined-only "$library" | sed -n 's/.* T \(tsr_[a-z0-9_]*\)@@\(.*\)$/__typeof__(\1)* \1_of_\2;/p'
 } >"$scratch/interface.c"
 (cd "$scratch" && cc -std=gnu99 -g -fPIC -shared -I"$include" interface.c -o interface.so)

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "tessera/tessera_c_files.h"
+#include "tessera/tessera_c_shapes.h"
 
 #include "layout.h"
 
@@ -62,6 +63,13 @@ static const struct layout layout[] = {
     PLACE(tsr_instance_info, colour, 120),
     PLACE(tsr_instance_info, has_colour, 136),
     SIZE(tsr_instance_info, 144),
+    PLACE(tsr_face_info, struct_size, 0),
+    PLACE(tsr_face_info, instance, 8),
+    PLACE(tsr_face_info, shape, 12),
+    PLACE(tsr_face_info, face, 16),
+    PLACE(tsr_face_info, colour, 20),
+    PLACE(tsr_face_info, has_colour, 36),
+    SIZE(tsr_face_info, 40),
     PLACE(tsr_set_options, struct_size, 0),
     PLACE(tsr_set_options, shape, 8),
     PLACE(tsr_set_options, flags, 16),
@@ -252,6 +260,7 @@ static const struct layout layout[] = {
     VALUE(TSR_PLAN_UV_SURFACE, 128),
     VALUE(TSR_PLAN_UV_UNIT, 256),
     VALUE(TSR_PLAN_UV_PATCH, 512),
+    VALUE(TSR_PLAN_EDGES, 1024),
     VALUE(TSR_MISS, 0),
     VALUE(TSR_HIT, 1),
     VALUE(TSR_INVALID_RAY, 2),

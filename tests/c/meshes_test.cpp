@@ -1,10 +1,14 @@
 // Meshes through C: those of C++, byte for byte; updates, files, and shapes at their places.
 
+#include <map>
+#include <set>
+
 #include "c/c_objects.h"
 #include "support/file_triangles.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
 #include "tessera/tessellation.h"
+#include "tessera/tessera_c_shapes.h"
 
 namespace tessera::test { namespace {
 
@@ -44,6 +48,50 @@ TEST(CMesh, BytesOfCpp) {
     ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr)) << flags;
     expect_same(memory, mesh_in_cpp(patches, options));
   }
+}
+
+using Segment = std::set<std::vector<float>>;
+
+/// The positions of the ends of edges of triangles that no other triangle has, by index.
+std::set<Segment> borders_of(const MeshMemory& mesh, const auto& segment) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+    const std::size_t next = k % 3 == 2 ? k - 2 : k + 1;
+    ++uses[std::minmax(mesh.triangles[k], mesh.triangles[next])];
+  }
+  std::set<Segment> borders;
+  for (const auto& [ends, count] : uses)
+    if (count == 1) borders.insert(segment(ends.first, ends.second));
+  return borders;
+}
+
+TEST(CMesh, EdgesOfShapesAsLines) {
+  tsr_model* made = nullptr;
+  ASSERT_C(tsr_model_join(&made, model_of(wavy_field(2, 2)).get(), 0));
+  const Handle<tsr_model> joined(made);
+  const Handle<tsr_set> set = set_of(made);
+  const Handle<tsr_plan> plan = plan_of(set.get(), 1e-3, TSR_PLAN_EDGES);
+  MeshMemory memory(plan.get());
+  tsr_mesh mesh = memory.mesh();
+  ASSERT_C(tsr_plan_write(plan.get(), &mesh, nullptr));
+  const auto segment = [&](std::uint32_t from, std::uint32_t to) {
+    const float* const p = memory.positions.data();
+    return Segment{{p + 3 * from, p + 3 * from + 3}, {p + 3 * to, p + 3 * to + 3}};
+  };
+
+  std::size_t count = 0, again = 0;
+  ASSERT_C(tsr_plan_edges(plan.get(), nullptr, 0, &count));
+  ASSERT_GT(count, 12u);
+  std::vector<std::uint32_t> ends(2 * count);
+  expect_c_error(tsr_plan_edges(plan.get(), ends.data(), count - 1, &again), TSR_BUFFER_TOO_SMALL, "there are");
+  EXPECT_EQ(again, count);
+  ASSERT_C(tsr_plan_edges(plan.get(), ends.data(), count, &count));
+  std::set<Segment> lines;
+  for (std::size_t k = 0; k < count; ++k) lines.insert(segment(ends[2 * k], ends[2 * k + 1]));
+  EXPECT_EQ(lines.size(), count);  // every edge once
+  EXPECT_EQ(lines, borders_of(memory, segment));
+  expect_c_error(tsr_plan_edges(plan_of(set.get(), 1e-3).get(), nullptr, 0, &count), TSR_INVALID_ARGUMENT,
+                 "without TSR_PLAN_EDGES");
 }
 
 TEST(CMesh, OptionsOfEveryKind) {

@@ -8,6 +8,7 @@
 #include "support/errors.h"
 #include "support/scratch_folder.h"
 #include "tessera/io.h"
+#include "tessera/tessera_c_shapes.h"
 
 namespace tessera::test { namespace {
 
@@ -114,6 +115,13 @@ TEST(CModel, PartsAndTheirPlaces) {
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(m[3 * c] * m[3 * c] + m[3 * c + 1] * m[3 * c + 1] + m[3 * c + 2] * m[3 * c + 2], 1, 1e-12);
   expect_c_error(tsr_model_instance(made, 18, &instance), TSR_INVALID_ARGUMENT, "instance 18 is none", 18);
+  tsr_face_info face = sized<tsr_face_info>();
+  ASSERT_C(tsr_model_face(made, instance.first_surface + 1, &face));
+  EXPECT_EQ(face.instance, 17u);
+  EXPECT_EQ(face.shape, instance.shape);
+  EXPECT_EQ(face.face, 1u);
+  expect_c_error(tsr_model_face(made, info.surfaces, &face), TSR_INVALID_ARGUMENT, "is none",
+                 static_cast<std::int64_t>(info.surfaces));
   const Handle<tsr_set> set = set_of(made, 0, 2);
   const Handle<tsr_plan> plan = plan_of(set.get(), 1e-3, TSR_PLAN_RELATIVE);
   tsr_plan_info mesh = sized<tsr_plan_info>();

@@ -7,14 +7,15 @@ import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
 
-import { Module } from './module.mjs';
+import { layoutOf } from '../../tools/npm/layout.mjs';
+import { Module } from '../../tools/npm/src/module.js';
 import { comparison, nativeResults, resultOf } from './results.mjs';
-import { structsOf } from './structs.mjs';
 
 const [moduleFile, program, root, data] = process.argv.slice(2);
 const maxBrotliBytes = 1_150_000;  // with the readers of all formats, and rays
-const structs = structsOf(join(root, 'engine/include/tessera'));
-const load = () => Module.load(moduleFile, structs);
+const layout = layoutOf(join(root, 'engine/include/tessera'));
+const compiled = await WebAssembly.compile(readFileSync(moduleFile));
+const load = () => Module.load(compiled, layout);
 
 let faults = 0;
 function report(ok, sentence) {
@@ -26,6 +27,11 @@ function filesBelow(folder, pattern) {
   return readdirSync(folder, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile() && pattern.test(entry.name))
     .map((entry) => join(entry.path, entry.name)).sort();
+}
+
+/** A native result with the name of its status instead of the number. */
+function named(tessera, { code, ...result }) {
+  return code === undefined ? result : { ...result, code: tessera.text(tessera.exports.tsr_status_name(code)) };
 }
 
 /**
@@ -40,7 +46,7 @@ function compare(tessera, title, paths, inLastBits) {
     some.forEach((path, n) => {
       const begin = performance.now(), found = resultOf(tessera, path);
       own += performance.now() - begin;
-      const { fault, isSame, hasSameHits } = comparison(found, wanted[n]);
+      const { fault, isSame, hasSameHits } = comparison(found, named(tessera, wanted[n]));
       if (fault) differing.push(`${basename(path)}: ${fault}`);
       else found.code ? ++errors : ++meshes;
       if (!fault && !isSame) others.push(basename(path));
@@ -89,15 +95,8 @@ async function checkMemory() {
   for (let size = 2 ** 28; size >= 2 ** 16; size /= 2)
     for (let at; (at = tessera.exports.malloc(size)) !== 0;) taken.push(at >>> 0);
   const path = join(root, 'tools/models/teapot.bpt');
-  const full = (() => {
-    try {
-      return resultOf(tessera, path);
-    } catch (error) {
-      return { message: error.message };
-    }
-  })();
-  const outOfMemory = 12;  // TSR_OUT_OF_MEMORY
-  report(full.code === outOfMemory, `without memory: ${full.code}, "${full.message}"`);
+  const full = resultOf(tessera, path);
+  report(full.code === 'out_of_memory', `without memory: ${full.code}, "${full.message}"`);
   tessera.free(...taken);
   const [wanted] = nativeResults(program, [path]);
   report(comparison(resultOf(tessera, path), wanted).isSame, 'the module goes on once there is memory again');

@@ -134,7 +134,6 @@ typedef struct tsr_model_info {
   uint64_t trimmed; /* surfaces with trimming loops */
 } tsr_model_info;
 tsr_status tsr_model_describe(const tsr_model* model, tsr_model_info* info);
-
 enum {
   TSR_TEXT_UNIT = 0,     /* of all lengths: "mm"; "": none is stated */
   TSR_TEXT_WARNING,      /* a part of the file that is skipped */
@@ -239,7 +238,8 @@ enum {
   TSR_PLAN_APART = 64,       /* faces of shapes do not share vertices along edges */
   TSR_PLAN_UV_SURFACE = 128, /* parameters of the surface: the default, but none with TSR_PLAN_SHARE */
   TSR_PLAN_UV_UNIT = 256,    /* as shares of its domain */
-  TSR_PLAN_UV_PATCH = 512    /* of the patch: not with TSR_PLAN_SHARE */
+  TSR_PLAN_UV_PATCH = 512,   /* of the patch: not with TSR_PLAN_SHARE */
+  TSR_PLAN_EDGES = 1024      /* prepared for tsr_plan_edges(): not with TSR_PLAN_APART */
 };
 /* At least one of tolerance(s), angle, pixels and TSR_PLAN_SMALLEST is needed, or rates alone. */
 typedef struct tsr_plan_options {

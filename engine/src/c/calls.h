@@ -20,6 +20,7 @@
 #include "tessera/status.h"
 #include "tessera/strided_view.h"
 #include "tessera/tessera_c_queries.h"
+#include "tessera/tessera_c_shapes.h"
 
 namespace tessera { inline namespace abi_0_1 {
 

@@ -1,5 +1,8 @@
 // Models of the C interface.
 
+#include <algorithm>
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -127,6 +130,30 @@ const std::string* text_of(const Model& model, std::int32_t kind, std::size_t in
   }
 }
 
+/// Writes a colour as four numbers; returns whether there is one.
+std::int32_t write_colour(const std::optional<Colour>& colour, float (&to)[4]) {
+  if (colour) std::ranges::copy(std::array{colour->red, colour->green, colour->blue, colour->alpha}, to);
+  return colour.has_value();
+}
+
+/// Describes a surface of the model as a face.
+tsr_face_info face_of(const Model& model, std::size_t surface) {
+  constexpr std::uint32_t none = 0xffffffff;
+  tsr_face_info filled{};
+  filled.instance = filled.shape = filled.face = none;
+  const auto after = std::ranges::upper_bound(model.instances, surface, {}, &Instance::first_surface);
+  if (after == model.instances.begin()) return filled;
+  const Instance& instance = after[-1];
+  const std::size_t face = surface - instance.first_surface;
+  if (instance.shape >= model.shapes.size() || face >= model.shapes[instance.shape].faces.size()) return filled;
+  filled.instance = static_cast<std::uint32_t>(after - model.instances.begin() - 1);
+  filled.shape = instance.shape;
+  filled.face = static_cast<std::uint32_t>(face);
+  const std::optional<Colour>& own = model.shapes[instance.shape].faces[face].colour;
+  filled.has_colour = write_colour(own ? own : instance.colour, filled.colour);
+  return filled;
+}
+
 CStatus no_such(const char* what, std::size_t index, std::size_t count) {
   CStatus status =
       bad(std::string(what) + " " + std::to_string(index) + " is none, there are " + std::to_string(count));
@@ -237,12 +264,18 @@ tsr_status tsr_model_instance(const tsr_model* model, size_t instance, tsr_insta
     double* at = filled.placement;
     for (const Vec3& column : {placement.columns[0], placement.columns[1], placement.columns[2], placement.translation})
       for (const double value : {column.x, column.y, column.z}) *at++ = value;
-    if (from.colour) {
-      filled.has_colour = 1;
-      const Colour& colour = *from.colour;
-      std::ranges::copy(std::array{colour.red, colour.green, colour.blue, colour.alpha}, filled.colour);
-    }
+    filled.has_colour = write_colour(from.colour, filled.colour);
     return write_struct("tsr_instance_info", info, filled);
+  });
+}
+
+tsr_status tsr_model_face(const tsr_model* model, size_t surface, tsr_face_info* info) {
+  return c_call([&]() -> CStatus {
+    const Held<CModel> of(model);
+    if (!of) return of.error();
+    const std::size_t count = of->model.surfaces.size();
+    if (surface >= count) return no_such("surface", surface, count);
+    return write_struct("tsr_face_info", info, face_of(of->model, surface));
   });
 }
 

@@ -74,11 +74,11 @@ struct CSet : Object {
 
 struct CPlan : Object {
   static constexpr Kind of_kind = Kind::plan;
-  CPlan(Tessellation of, std::shared_ptr<CSet> from, bool normals)
-      : Object(of_kind), plan(std::move(of)), set(std::move(from)), has_normals(normals) {}
+  CPlan(Tessellation of, std::shared_ptr<CSet> from, bool normals, bool edges)
+      : Object(of_kind), plan(std::move(of)), set(std::move(from)), has_normals(normals), has_edges(edges) {}
   Tessellation plan;
   std::shared_ptr<CSet> set;
-  bool has_normals;
+  bool has_normals, has_edges;
   Usage usage;
 };
 

@@ -1,6 +1,8 @@
 // Plans of the C interface.
 
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "c/mesh.h"
 #include "c/objects.h"
@@ -26,7 +28,7 @@ View view_of(const tsr_plan_options& from) {
 CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
   constexpr std::uint32_t known = TSR_PLAN_RELATIVE | TSR_PLAN_SHARE | TSR_PLAN_QUADS | TSR_PLAN_FEWEST |
                                   TSR_PLAN_SMALLEST | TSR_PLAN_DOUBLE | TSR_PLAN_APART | TSR_PLAN_UV_SURFACE |
-                                  TSR_PLAN_UV_UNIT | TSR_PLAN_UV_PATCH;
+                                  TSR_PLAN_UV_UNIT | TSR_PLAN_UV_PATCH | TSR_PLAN_EDGES;
   if (from.flags & ~known) return bad("tsr_plan_options: flags has bits that mean nothing");
   const auto has = [&](std::uint32_t flag) { return (from.flags & flag) != 0; };
   if (from.rate_u != 0 || from.rate_v != 0) to.rates = UniformRates{from.rate_u, from.rate_v};
@@ -41,6 +43,7 @@ CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
   if (!(from.max_gap < 0)) to.joining.max_gap = from.max_gap;
   to.relative = has(TSR_PLAN_RELATIVE), to.joining.share_vertices = has(TSR_PLAN_SHARE), to.quads = has(TSR_PLAN_QUADS);
   to.fewest = has(TSR_PLAN_FEWEST), to.joining.close_edges = !has(TSR_PLAN_APART);
+  to.joining.edge_vertices = has(TSR_PLAN_EDGES);
   if (has(TSR_PLAN_DOUBLE)) to.precision = Precision::double_precision;
   to.spare = from.spare, to.max_triangles = from.max_triangles;
   if (has(TSR_PLAN_SMALLEST)) to.budget = from.max_triangles;
@@ -54,6 +57,19 @@ CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
 PatchEdits edits_of(const uint32_t* patches, std::size_t count, const double* points, std::size_t point_count) {
   if (count == 0) return {};
   return {.patch = {patches, count}, .points = {reinterpret_cast<const Vec3*>(points), point_count}};
+}
+
+/// Gives the two vertices of each line along the edges to `line`, those of each edge's first use. Vertices of patches
+/// that meet at one parameter make no line.
+template <class Line>
+void each_line(std::span<const EdgeVertex> vertices, Line&& line) {
+  std::size_t first = 0;  // of the edge
+  for (std::size_t k = 1; k < vertices.size(); ++k) {
+    const EdgeVertex &from = vertices[k - 1], &to = vertices[k];
+    if (to.edge != from.edge) first = k;
+    if (to.edge != from.edge || to.use != vertices[first].use) continue;
+    if (to.s != from.s && to.vertex != from.vertex) line(from.vertex, to.vertex);
+  }
 }
 
 }}}  // namespace tessera::abi_0_1
@@ -90,7 +106,8 @@ tsr_status tsr_plan_new(tsr_plan** plan, const tsr_set* set, const tsr_plan_opti
       Result<Tessellation> made = Tessellation::make(of->set, wanted, execution);
       if (!made) return made.status();
       const bool has_normals = !wanted.joining.share_vertices || wanted.joining.crease_angle.has_value();
-      return give(plan, std::make_shared<CPlan>(*std::move(made), of.shared(), has_normals));
+      return give(plan,
+                  std::make_shared<CPlan>(*std::move(made), of.shared(), has_normals, wanted.joining.edge_vertices));
     });
   });
 }
@@ -125,6 +142,27 @@ tsr_status tsr_plan_write(const tsr_plan* plan, const tsr_mesh* mesh, const tsr_
     const Reading of_set(of->set->usage);
     if (!of_set) return in_use(Object::Kind::set);
     return run_work(run, [&](const Execution& execution) { return of->plan.run(of->set->set, views, execution); });
+  });
+}
+
+tsr_status tsr_plan_edges(const tsr_plan* plan, uint32_t* vertices, size_t capacity, size_t* count) {
+  return c_call([&]() -> CStatus {
+    const Held<CPlan> of(plan);
+    if (!of) return of.error();
+    if (!count) return null_pointer("count");
+    if (!of->has_edges) return bad("the plan was made without TSR_PLAN_EDGES");
+    const Reading reading(of->usage);
+    if (!reading) return in_use(Object::Kind::plan);
+    const Result<std::vector<EdgeVertex>> listed = edge_vertices(of->plan);
+    if (!listed) return listed.status();
+    *count = 0;
+    each_line(*listed, [&](std::uint32_t, std::uint32_t) { ++*count; });
+    if (!vertices) return {};
+    if (capacity < *count)
+      return {TSR_BUFFER_TOO_SMALL,
+              "vertices holds " + std::to_string(capacity) + " lines, there are " + std::to_string(*count)};
+    each_line(*listed, [&](std::uint32_t from, std::uint32_t to) { *vertices++ = from, *vertices++ = to; });
+    return {};
   });
 }
 

@@ -1,5 +1,5 @@
 """The C library: where it lies, and its structs and functions, declared from two tables as in tessera_c.h,
-tessera_c_files.h and tessera_c_queries.h."""
+tessera_c_files.h, tessera_c_shapes.h and tessera_c_queries.h."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ _STRUCTS = {
     "tsr_model_info": "uint64 surfaces, uint64 shapes, uint64 instances, uint64 warnings, uint64 trimmed",
     "tsr_surface_info": "double domain[4], uint64 loops",
     "tsr_instance_info": "uint64 shape, uint64 first_surface, double placement[12], float colour[4], int32 has_colour",
+    "tsr_face_info": "uint32 instance, uint32 shape, uint32 face, float colour[4], int32 has_colour",
     "tsr_set_options": "int64 shape, uint32 flags, uint32 reserved, double fit_tolerance",
     "tsr_set_info": "uint64 patches, uint64 surfaces, uint64 cut_patches, uint64 memory_bytes, uint64 revision, "
     "double low[3], double high[3], double origin[3], double fit_error, uint64 unused_loops",
@@ -101,6 +102,7 @@ _FUNCTIONS = {
     "tsr_model_text": "zpis",
     "tsr_model_surface": "ipsp",
     "tsr_model_instance": "ipsp",
+    "tsr_model_face": "ipsp",
     "tsr_set_defaults": "-p",
     "tsr_set_new": "ipppp",
     "tsr_set_describe": "ipp",
@@ -112,6 +114,7 @@ _FUNCTIONS = {
     "tsr_plan_new": "ipppp",
     "tsr_plan_describe": "ipp",
     "tsr_plan_write": "ippp",
+    "tsr_plan_edges": "ippsp",
     "tsr_plan_set_view": "ipp",
     "tsr_plan_update": "ippspsppp",
     "tsr_mesh_check": "ipp",

@@ -12,7 +12,7 @@ from tessera import _calls, _library
 
 @pytest.fixture
 def header(sources):
-    names = ("tessera_c.h", "tessera_c_files.h", "tessera_c_queries.h")
+    names = ("tessera_c.h", "tessera_c_files.h", "tessera_c_shapes.h", "tessera_c_queries.h")
     text = "".join((sources / "engine/include/tessera" / name).read_text() for name in names)
     return re.sub(r"/\*.*?\*/", "", text, flags=re.S)
 

@@ -1,6 +1,8 @@
-// The structs of tessera_c*.h as a 32-bit program lays them out, read from the headers themselves.
-import { readFileSync, readdirSync } from 'node:fs';
+// The structs and constants of tessera_c*.h as a 32-bit program has them, read from the headers themselves.
+//   node layout.mjs INCLUDE-FOLDER OUTPUT    writes src/layout.js
+import { readFileSync, readdirSync, realpathSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 
 const scalars = {
   size_t: ['getUint32', 4], int32_t: ['getInt32', 4], uint32_t: ['getUint32', 4], int64_t: ['getBigInt64', 8],
@@ -17,11 +19,28 @@ function membersOf(declaration) {
   });
 }
 
-/** Reads all structs: name -> { size, align, members: name -> { offset, read, bytes, count, struct } }. */
-export function structsOf(include) {
-  const structs = {};
+/** The constants of enums that a text declares: name -> value. */
+function constantsOf(text) {
+  const constants = {};
+  for (const [, body] of text.matchAll(/enum \{([^}]*)\}/g)) {
+    let next = 0;
+    for (const [, name, value] of body.matchAll(/(TSR_\w+)\s*(?:=\s*(\d+))?/g)) {
+      constants[name] = value === undefined ? next : Number(value);
+      next = constants[name] + 1;
+    }
+  }
+  return constants;
+}
+
+/**
+ * Reads all of them: { structs: name -> { size, align, members: name -> { offset, read, bytes, count, struct } },
+ * constants: name -> value }. `struct` is the name of a member's own struct.
+ */
+export function layoutOf(include) {
+  const structs = {}, constants = {};
   for (const header of readdirSync(include).filter((name) => /^tessera_c.*\.h$/.test(name)).sort()) {
     const text = readFileSync(join(include, header), 'utf8').replace(/\/\*[\s\S]*?\*\//g, '');
+    Object.assign(constants, constantsOf(text));
     for (const [, body, name] of text.matchAll(/typedef struct \w+ \{([\s\S]*?)\} (\w+);/g)) {
       const struct = { size: 0, align: 1, members: {} };
       const declarations = body.split(';').filter((each) => each.trim());
@@ -30,7 +49,7 @@ export function structsOf(include) {
         const [read, bytes] = inner ? [null, inner.size] : scalars[type];
         const align = inner ? inner.align : bytes;
         const offset = Math.ceil(struct.size / align) * align;
-        struct.members[member] = { offset, read, bytes, count, struct: inner };
+        struct.members[member] = { offset, read, bytes, count, struct: inner ? type : undefined };
         struct.size = offset + bytes * count;
         struct.align = Math.max(struct.align, align);
       }
@@ -38,5 +57,14 @@ export function structsOf(include) {
       structs[name] = struct;
     }
   }
-  return structs;
+  return { structs, constants };
+}
+
+if (process.argv[1] && realpathSync(process.argv[1]) === fileURLToPath(import.meta.url)) {
+  const [include, output] = process.argv.slice(2);
+  if (!output) {
+    console.error('usage: node layout.mjs INCLUDE-FOLDER OUTPUT');
+    process.exit(2);
+  }
+  writeFileSync(output, `// Made of tessera_c*.h by layout.mjs.\nexport const layout = ${JSON.stringify(layoutOf(include))};\n`);
 }
