@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "tessera/status.h"
@@ -12,12 +13,15 @@
 namespace tessera { inline namespace abi_0_1 {
 
 #ifdef __cpp_exceptions
-/// The Status of the exception that is being handled: out_of_memory, or internal with its message.
+/// The Status of the exception that is being handled: out_of_memory, also of a container that would be longer than any
+/// memory, or internal with its message.
 [[gnu::cold]] inline Status status_of_exception() noexcept {
   try {
     try {
       throw;
     } catch (const std::bad_alloc&) {
+      return Status(StatusCode::out_of_memory, "out of memory");
+    } catch (const std::length_error&) {  // of a container
       return Status(StatusCode::out_of_memory, "out of memory");
     } catch (const std::exception& error) {
       return Status(StatusCode::internal, error.what());
