@@ -98,7 +98,8 @@ test('the facts of a STEP file', async () => {
   assert.equal(instance.placement.length, 12);
   assert.equal(typeof model.shape(0).name, 'string');
   assert.deepEqual(model.warnings, []);
-  const faces = Array.from({ length: model.surfaceCount }, (_, k) => model.surface(k)).filter(({ shape }) => shape === 0);
+  const faces = Array.from({ length: model.surfaceCount }, (_, k) => model.surface(k))
+    .filter(({ shape }) => shape === 0);
   assert.equal(model.patches({ shape: 0 }).surfaceCount, new Set(faces.map(({ face }) => face)).size);
 });
 

@@ -31,7 +31,8 @@ test('wrong arguments are errors with a sentence', async () => {
     ...[-1, 0.5, 32, NaN, Infinity, 2 ** 32, '0', null, undefined, 0n].flatMap((index) => [
       () => model.surface(index), () => model.instance(index), () => model.shape(index), () => patches.patch(index)]),
     () => model.join('far'), () => model.join(NaN), () => model.join(-1), () => model.save(), () => model.save('stl'),
-    () => model.measure({ accuracy: 'high' }), () => model.measure({ bodies: 1 }), () => model.measure({ accuracy: NaN }),
+    () => model.measure({ accuracy: 'high' }), () => model.measure({ bodies: 1 }),
+    () => model.measure({ accuracy: NaN }),
     () => model.patches(5), () => model.patches({ shape: 0 }), () => model.patches({ shape: -1 }),
     () => model.patches({ whole: 'no' }), () => model.patches({ fitTolerance: NaN }), () => model.patches([]),
     ...[[0.5], [-1], [2 ** 32], [NaN], ['0'], '0', null, undefined, new Float64Array([0.5]), new BigUint64Array(1)]
@@ -53,28 +54,38 @@ test('wrong options of plans and rays are errors', async () => {
   const plan = patches.plan({ tolerance: 0.1 }), mesh = plan.write(), scene = patches.rays();
   const view = { eye: [0, -9, 0], target: [0, 0, 0], up: [0, 0, 1] };
   const calls = [
-    () => patches.plan(), () => patches.plan({}), () => patches.plan({ tolerance: NaN }), () => patches.plan({ angle: 9 }),
-    () => patches.plan({ tolerance: -1 }), () => patches.plan({ tolerance: Infinity }), () => patches.plan({ tolerance: '1' }),
+    () => patches.plan(), () => patches.plan({}), () => patches.plan({ tolerance: NaN }),
+    () => patches.plan({ angle: 9 }),
+    () => patches.plan({ tolerance: -1 }), () => patches.plan({ tolerance: Infinity }),
+    () => patches.plan({ tolerance: '1' }),
     () => patches.plan({ rates: 0.5 }), () => patches.plan({ rates: [1] }), () => patches.plan({ rates: 5000 }),
     () => patches.plan({ rates: -1 }), () => patches.plan({ rates: [NaN, 1] }), () => patches.plan({ rates: {} }),
-    () => patches.plan({ tolerance: 1, maxTriangles: 0.5 }), () => patches.plan({ tolerance: 1, maxTriangles: Infinity }),
-    () => patches.plan({ tolerance: 1e-3, maxTriangles: 3 }), () => patches.plan({ tolerance: 1, parameters: 'toString' }),
+    () => patches.plan({ tolerance: 1, maxTriangles: 0.5 }),
+    () => patches.plan({ tolerance: 1, maxTriangles: Infinity }),
+    () => patches.plan({ tolerance: 1e-3, maxTriangles: 3 }),
+    () => patches.plan({ tolerance: 1, parameters: 'toString' }),
     () => patches.plan({ tolerance: 1, parameters: Symbol('s') }), () => patches.plan({ tolerance: 1, edges: 1 }),
     () => patches.plan({ surfaceTolerances: [1] }), () => patches.plan({ surfaceTolerances: 'all' }),
     () => patches.plan({ pixels: 1, view: 5 }), () => patches.plan({ pixels: 1, view: { ...view, eye: 5 } }),
-    () => patches.plan({ pixels: 1, view: { ...view, eye: [0, 0] } }), () => patches.plan({ pixels: 1, view: { from: 1 } }),
+    () => patches.plan({ pixels: 1, view: { ...view, eye: [0, 0] } }),
+    () => patches.plan({ pixels: 1, view: { from: 1 } }),
     () => patches.plan({ pixels: 1, view: { ...view, eye: [NaN, 0, 0] } }), () => patches.plan({ pixels: 1, view: [] }),
-    () => patches.plan({ pixels: 1, view: { ...view, width: -1 } }), () => patches.plan({ pixels: 1, view: { ...view, width: 1e10 } }),
-    () => plan.write(5), () => plan.write({}), () => plan.write(undefined, 5), () => plan.write(null, { parameters: 1 }),
-    () => plan.write(patches), () => plan.update(), () => plan.update({}), () => plan.update(mesh, { points: [1, 2, 3] }),
+    () => patches.plan({ pixels: 1, view: { ...view, width: -1 } }),
+    () => patches.plan({ pixels: 1, view: { ...view, width: 1e10 } }),
+    () => plan.write(5), () => plan.write({}), () => plan.write(undefined, 5),
+    () => plan.write(null, { parameters: 1 }),
+    () => plan.write(patches), () => plan.update(), () => plan.update({}),
+    () => plan.update(mesh, { points: [1, 2, 3] }),
     () => plan.update(mesh, { patches: [0], points: [1] }), () => plan.update(mesh, { view: { eye: 1 } }),
     () => plan.update(mesh, { patches: [99], points: new Float64Array(48) }), () => mesh.save(), () => mesh.save('bpt'),
     () => mesh.save('g\0lb'), () => patches.rays({ tolerance: NaN }), () => patches.rays({ pieces: 3 }),
     () => patches.rays({ editable: 1 }), () => scene.closest([0, 0, 0]), () => scene.closest([0, 0], [0, 0, 1]),
     () => scene.closest([0, 0, 0, 0, 0, 0], [0, 0, 1]), () => scene.closest([0, 0, 0], 'abc'), () => scene.refit(),
     () => scene.closest([0, 0, 0], [0, 0, 1], { quantities: ['constructor'] }),
-    () => scene.closest([0, 0, 0], [0, 0, 1], { quantities: 't' }), () => scene.closest([0, 0, 0], [0, 0, 1], { near: 'a' }),
-    () => scene.closest([0, 0, 0], [0, 0, 1], { far: [1, 2] }), () => scene.occluded([0, 0, 0], [0, 0, 1], { quantities: ['t'] }),
+    () => scene.closest([0, 0, 0], [0, 0, 1], { quantities: 't' }),
+    () => scene.closest([0, 0, 0], [0, 0, 1], { near: 'a' }),
+    () => scene.closest([0, 0, 0], [0, 0, 1], { far: [1, 2] }),
+    () => scene.occluded([0, 0, 0], [0, 0, 1], { quantities: ['t'] }),
   ];
   const noError = [];
   for (const call of calls)
@@ -101,7 +112,8 @@ test('disposed objects are errors, and what was made of them goes on', async () 
   const again = plan.write(mesh);
   assert.ok(again === mesh && mesh.save('glb').length > 1000 && scene.closest([0, 0, 0], [0, 0, 1]).t.length === 1);
   for (const call of [() => model.patches(), () => model.surface(0), () => model.warnings, () => model.save('bpt'),
-    () => model.measure(), () => model.join(), () => model.instance(0), () => model.shape(0), () => patches.plan({ tolerance: 1 }),
+    () => model.measure(), () => model.join(), () => model.instance(0), () => model.shape(0),
+    () => patches.plan({ tolerance: 1 }),
     () => patches.rays(), () => patches.patch(0), () => patches.edit([], []), () => patches.evaluate(0, 0, 0),
     () => patches.surfaces])
     assert.equal(await codeOf(call), 'invalid_handle', `${call}`);
@@ -109,7 +121,8 @@ test('disposed objects are errors, and what was made of them goes on', async () 
   assert.ok(mesh.check().triangles > 0);
   mesh.dispose();
   scene.dispose();
-  for (const call of [() => plan.write(), () => plan.update(mesh), () => mesh.positions, () => mesh.normals, () => mesh.edges,
+  for (const call of [() => plan.write(), () => plan.update(mesh),
+    () => mesh.positions, () => mesh.normals, () => mesh.edges,
     () => mesh.triangles, () => mesh.copy(), () => mesh.check(), () => mesh.save('glb'), () => scene.info,
     () => scene.closest([0, 0, 0], [0, 0, 1]), () => scene.refit()])
     assert.equal(await codeOf(call), 'invalid_handle', `${call}`);
@@ -121,7 +134,8 @@ test('a plan refuses meshes that it cannot write', async () => {
   const foreign = two.plan({ rates: 2 }).write();
   assert.match((await errorOf(() => plan.write(foreign))).message, /another instance/);
   assert.match((await errorOf(() => plan.update(foreign))).message, /another instance/);
-  assert.match((await errorOf(() => plan.write(one.model.patches().plan({ rates: 1 }).write()))).message, /other Patches/);
+  assert.match((await errorOf(() => plan.write(one.model.patches().plan({ rates: 1 }).write()))).message,
+    /other Patches/);
   assert.match((await errorOf(() => second.update(mesh))).message, /wrote last/);
   mesh.dispose();
   assert.equal(await codeOf(() => plan.write(mesh)), 'invalid_handle');
@@ -139,7 +153,8 @@ test('scenes of an earlier state are stale', async () => {
 test('progress() cannot use the instance, and its error ends the call', async () => {
   const tessera = await load(), model = tessera.read('block.step', block), patches = model.patches();
   const plan = patches.plan({ tolerance: 0.1 }), mesh = plan.write();
-  const uses = [() => model.patches(), () => tessera.read('a.bpt', teapot), () => mesh.dispose(), () => patches.dispose(),
+  const uses = [() => model.patches(), () => tessera.read('a.bpt', teapot), () => mesh.dispose(),
+    () => patches.dispose(),
     () => plan.write(mesh), () => model.surface(0), () => mesh.save('glb'), () => plan.write()];
   for (const use of uses) {
     const codes = [];
@@ -173,7 +188,8 @@ test('after a trap each call says so, and other instances go on', async () => {
   const tessera = await load(), model = tessera.bspline([square]), mesh = model.patches().plan({ rates: 1 }).write();
   const module = tessera[its.module];
   assert.throws(() => module.call('tsr_model_describe', model[its.handle], 0xfffffff0 | 0), { code: 'internal' });
-  for (const call of [() => model.patches(), () => tessera.bspline([square]), () => mesh.check(), () => model.surface(0)])
+  for (const call of [() => model.patches(), () => tessera.bspline([square]), () => mesh.check(),
+    () => model.surface(0)])
     assert.match((await errorOf(call)).message, /stopped and cannot be used any more/);
   model.dispose();
   mesh.dispose();

@@ -13,7 +13,8 @@ test('a thousand errors leave nothing', async () => {
     () => tessera.read('a.bpt', 'garbage'), () => tessera.read('a.step', block.subarray(0, 200)),
     () => tessera.read('a.step', block, late), () => tessera.read('a.step', block, { progress: () => false }),
     () => model.patches(late), () => model.patches({ shape: 1 }), () => patches.plan({ tolerance: 0.1, ...late }),
-    () => patches.plan({ tolerance: 0.1, view: { eye: [1] } }), () => plan.write(null, late), () => plan.write(mesh, late),
+    () => patches.plan({ tolerance: 0.1, view: { eye: [1] } }), () => plan.write(null, late),
+    () => plan.write(mesh, late),
     () => plan.write(null, { progress: () => false }), () => patches.rays(late), () => patches.rays({ pieces: 5 }),
     () => scene.closest([0, 0, 0], [0, 0, 1], { far: ['x'] }), () => scene.closest([0, 0, 0], [0, 0, 1], late),
     () => tessera.bspline([square, { ...square, weights: [1, 1, 1, NaN] }]), () => patches.edit([0], [1, 2, 3]),
@@ -51,7 +52,8 @@ test('arguments that are views of the module itself stand when memory grows', as
   const held = list(), taken = [];
   // Little memory is left, so that the call makes it grow.
   for (let size = 2 ** 20; size >= 64; size /= 2)
-    for (let before = tessera.memoryBytes; tessera.memoryBytes === before && taken.length < 1e5;) taken.push(module.allocate(size));
+    for (let before = tessera.memoryBytes; tessera.memoryBytes === before && taken.length < 1e5;)
+      taken.push(module.allocate(size));
   patches.edit([0], list().map((x) => x + 1));
   patches.edit([0], list());
   assert.deepEqual(patches.patch(0).points, new Float64Array(square.points));
@@ -92,11 +94,13 @@ test('what is too large for 2 GB is out_of_memory, and the instance goes on', as
 });
 
 test('memory that runs out within a call is out_of_memory, and the instance goes on', async () => {
-  const tessera = await load(), module = tessera[its.module], patches = tessera.read('a.bpt', teapot).patches(), taken = [];
+  const tessera = await load(), module = tessera[its.module], patches = tessera.read('a.bpt', teapot).patches(),
+    taken = [];
   for (let size = 2 ** 28; size >= 2 ** 8; size /= 2)
     for (let at; (at = module.exports.malloc(size)) !== 0;) taken.push(at);
   assert.ok(tessera.memoryBytes > 2 ** 31 - 2 ** 20);
-  for (const call of [() => tessera.read('block.step', block), () => patches.plan({ tolerance: 1e-3 }), () => patches.rays(),
+  for (const call of [() => tessera.read('block.step', block), () => patches.plan({ tolerance: 1e-3 }),
+    () => patches.rays(),
     () => patches.plan({ rates: 9 }), () => patches.model.patches(), () => tessera.bspline(Array(1000).fill(square))])
     assert.equal(await codeOf(call), 'out_of_memory', `${call}`);
   for (const at of taken) module.exports.free(at);
@@ -107,7 +111,7 @@ test('two instances stand side by side', async () => {
   const [one, two] = [await load(), await load()];
   const models = [one.read('a.bpt', teapot), two.bspline([square])];
   const meshes = models.map((model) => model.patches().plan({ rates: 2 }).write());
-  assert.deepEqual(meshes.map((mesh) => mesh.triangleCount), [240, 8]);  // four of the teapot's patches have a side that is a point
+  assert.deepEqual(meshes.map((mesh) => mesh.triangleCount), [240, 8]);
   models[0].dispose();
   assert.equal(models[1].surface(0).loops, 0);
 });

@@ -37,7 +37,8 @@ const sumOf = (content) => gzipSync(content).readUInt32LE(gzipSync(content).leng
 
 test('packed files are read as plain ones', async () => {
   const tessera = await load(), sum = sumOf(block);
-  for (const [name, bytes] of [['teapot.bpt.gz', gzipSync(teapot)], ['teapot.bpt', teapot], ['teapot.bpt', gzipSync(teapot)]])
+  for (const [name, bytes] of [['teapot.bpt.gz', gzipSync(teapot)], ['teapot.bpt', teapot],
+    ['teapot.bpt', gzipSync(teapot)]])
     assert.equal((await tessera.open(name, bytes)).surfaceCount, 32);
   const faces = tessera.read('block.step', block).surfaceCount, files = [['block.step', block, sum]];
   const shared = new Uint8Array(new SharedArrayBuffer(gzipSync(block).length));
@@ -53,11 +54,13 @@ test('damaged archives are errors', async () => {
   const tessera = await load(), zip = zipOf([['block.step', block, sumOf(block)]]), packed = gzipSync(teapot);
   const wrong = [
     ['a.bpt.gz', teapot, /expected gzip data/], ['a.bpt.gz', packed.subarray(0, 99), /damaged or cut/],
-    ['a.bpt.gz', packed.subarray(0, packed.length - 1), /damaged or cut/], ['a.bpt.gz', gzipSync(''), /the file is empty/],
+    ['a.bpt.gz', packed.subarray(0, packed.length - 1), /damaged or cut/],
+    ['a.bpt.gz', gzipSync(''), /the file is empty/],
     ['a.bpt.gz', Buffer.concat([packed, Buffer.from('more')]), /damaged or cut/], ['a.bpt', '', /a\.bpt/],
     ['a.stpz', zip.subarray(0, zip.length - 1), /no end/], ['a.stpz', zip.subarray(0, 999), /no end/],
     ['a.stpz', zipOf([['block.step', block, 5]]), /damaged or cut/], ['a.stpz', zipOf([]), /expected|no end|zip/],
-    ['a.stpz', zipOf([['folder/', '', 0]]), /holds no file/], ['a.stpz', zipOf([['a', 'a', 0], ['b', 'b', 0]]), /holds 2 files/],
+    ['a.stpz', zipOf([['folder/', '', 0]]), /holds no file/], ['a.stpz', zipOf([['a', 'a', 0],
+    ['b', 'b', 0]]), /holds 2 files/],
     ['a.stpz', zipOf([['a.step', block, 0]], 14), /uses compression 14/],
     ['huge.bpt.gz', gzipSync(Buffer.alloc(2 ** 27)), /unpacks to more than .* bytes; the limit is 200 times/],
   ];

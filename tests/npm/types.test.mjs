@@ -18,7 +18,8 @@ test('types.ts compiles by --strict, and its wrong uses do not',
       mkdirSync(join(place, 'node_modules'));
       symlinkSync(folder, join(place, 'node_modules/tessera'));
       cpSync(join(root, 'tests/npm/types.ts'), join(place, 'types.mts'));
-      const { status, stdout } = spawnSync(compiler, ['--strict', '--noEmit', '--target', 'es2022', '--lib', 'es2022,dom',
+      const { status, stdout } = spawnSync(compiler, ['--strict', '--noEmit', '--target', 'es2022', '--lib',
+        'es2022,dom',
         '--module', 'node16', '--moduleResolution', 'node16', 'types.mts'], { cwd: place, encoding: 'utf8' });
       assert.equal(status, 0, stdout);
     } finally {
@@ -26,7 +27,8 @@ test('types.ts compiles by --strict, and its wrong uses do not',
     }
   });
 
-const texts = ['index.d.ts', ...readdirSync(join(folder, 'src')).filter((name) => name.endsWith('.d.ts')).map((name) => `src/${name}`)]
+const texts = ['index.d.ts', ...readdirSync(join(folder, 'src')).filter((name) => name.endsWith('.d.ts'))
+  .map((name) => `src/${name}`)]
   .map((name) => readFileSync(join(folder, name), 'utf8')).join('\n');
 /** The members that the types of a class name, those of its base too. */
 function typed(name) {
@@ -38,7 +40,8 @@ function typed(name) {
 test('the types name all members, and no others', async () => {
   const tessera = await core.init(), { square } = await import('./package.mjs');
   const model = tessera.bspline([square]), patches = model.patches(), plan = patches.plan({ rates: 1 });
-  const objects = { Tessera: tessera, Model: model, Patches: patches, Plan: plan, Mesh: plan.write(), Scene: patches.rays() };
+  const objects = { Tessera: tessera, Model: model, Patches: patches, Plan: plan, Mesh: plan.write(),
+    Scene: patches.rays() };
   for (const [name, object] of Object.entries(objects)) {
     const members = new Set(Object.getOwnPropertyNames(object));
     for (let from = Object.getPrototypeOf(object); from !== Object.prototype; from = Object.getPrototypeOf(from))

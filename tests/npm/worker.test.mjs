@@ -16,7 +16,8 @@ const start = async (options) => {
 after(() => started.forEach((tessera) => tessera.terminate()));
 
 test('the interface is that of the core', () => {
-  const members = (Class) => Object.getOwnPropertyNames(Class.prototype).filter((name) => name !== 'constructor').sort();
+  const members = (Class) => Object.getOwnPropertyNames(Class.prototype).filter((name) => name !== 'constructor')
+    .sort();
   for (const name of ['Tessera', 'Model', 'Patches', 'Plan', 'Mesh', 'Scene']) {
     const own = members(worker[name]).concat(members(Object.getPrototypeOf(worker[name])), ['dispose', 'isDisposed']);
     const missing = members(core[name]).filter((member) => !own.includes(member));
@@ -34,7 +35,8 @@ test('results are those of the core', async () => {
   assert.ok(patches.model === model);
   assert.deepEqual({ ...patches }, { ...own });
   const options = { tolerance: 0.1, edges: true };
-  const [ownPlan, plan] = [own.plan(options), await patches.plan(options)], [ownMesh, mesh] = [ownPlan.write(), await plan.write()];
+  const [ownPlan, plan] = [own.plan(options), await patches.plan(options)],
+    [ownMesh, mesh] = [ownPlan.write(), await plan.write()];
   assert.deepEqual({ ...plan }, { ...ownPlan });
   assert.ok(mesh instanceof worker.Mesh && mesh.patches === patches && plan.patches === patches);
   assert.equal(mesh.triangleCount, ownMesh.triangleCount);
@@ -60,10 +62,12 @@ test('edits and updates change the values of their objects', async () => {
 
 test('errors are those of the core', async () => {
   const tessera = await start(), here = await load();
-  for (const call of [(t) => t.read('cut.bpt', 'garbage'), (t) => t.read('a.step', block.subarray(0, 500)), (t) => t.read(5),
+  for (const call of [(t) => t.read('cut.bpt', 'garbage'), (t) => t.read('a.step', block.subarray(0, 500)),
+    (t) => t.read(5),
     (t) => t.bspline([square, { ...square, weights: [1, 1, 1, -1] }]), (t) => t.read('a.bpt', teapot, { fromat: 1 })]) {
     const [there, own] = [await errorOf(() => call(tessera)), await errorOf(() => call(here))];
-    assert.deepEqual([there.name, there.code, there.message, there.index], [own.name, own.code, own.message, own.index]);
+    assert.deepEqual([there.name, there.code, there.message, there.index],
+      [own.name, own.code, own.message, own.index]);
   }
   assert.equal(await codeOf(() => tessera.read('a.bpt', () => 5)), 'invalid_argument');
   assert.equal(await codeOf(() => tessera.read('a.bpt', teapot, { progress: 5 })), 'invalid_argument');
@@ -118,9 +122,11 @@ for (const shared of [true, false]) {
     assert.equal(await codeOf(() => tessera.read('a.bpt', teapot, { signal })), 'cancelled');
     const stop = { progress: () => false };
     assert.equal(await codeOf(() => tessera.read('block.step', block, stop)), 'cancelled');
-    await assert.rejects(tessera.read('block.step', block, { progress: () => { throw new RangeError('mine'); } }), /mine/);
+    await assert.rejects(tessera.read('block.step', block, { progress: () => { throw new RangeError('mine'); } }),
+      /mine/);
     const shares = [];
-    assert.ok((await tessera.read('block.step', block, { progress: (share) => void shares.push(share) })).surfaceCount > 0);
+    assert.ok((await tessera.read('block.step', block,
+      { progress: (share) => void shares.push(share) })).surfaceCount > 0);
     assert.ok(shares.at(-1) === 1 && shares.every((share, k) => share > (shares[k - 1] ?? 0)));
   });
 }
@@ -147,7 +153,9 @@ test('a program ends while an idle worker stands, and while one computes', () =>
     `import { init } from ${address}; const tessera = await init(); ${text}`], { encoding: 'utf8', timeout: 60_000 });
   const squares = `Array(3000).fill(${JSON.stringify(square)})`;
   for (const text of ['console.log(tessera.version)',
-    `(await tessera.bspline(${squares})).measure().catch(() => {}); setTimeout(() => { console.log(1); process.exit(0) }, 50)`]) {
+    'await init(new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0])).catch(({ code }) => console.log(code))',
+    `(await tessera.bspline(${squares})).measure().catch(() => {});
+      setTimeout(() => { console.log(1); process.exit(0) }, 50)`]) {
     const { status, stdout, stderr } = run(text);
     assert.ok(status === 0 && stdout.length > 1, stderr);
   }

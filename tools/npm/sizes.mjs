@@ -9,7 +9,8 @@ export function sizesOf(folder) {
     .filter((entry) => entry.isFile() && ['.js', '.wasm'].includes(extname(entry.name)))
     .map((entry) => join(folder, ...path, entry.name));
   const parts = { 'tessera.wasm': [], 'index.js, src': [] };
-  for (const file of [...filesIn(), ...filesIn('src')]) parts[file.endsWith('.wasm') ? 'tessera.wasm' : 'index.js, src'].push(file);
+  for (const file of [...filesIn(), ...filesIn('src')])
+    parts[file.endsWith('.wasm') ? 'tessera.wasm' : 'index.js, src'].push(file);
   for (const name of ['worker', 'three']) if (readdirSync(folder).includes(name)) parts[name] = filesIn(name);
   return Object.entries(parts).map(([part, files]) => {
     const contents = files.map((file) => readFileSync(file));

@@ -65,7 +65,10 @@ export class Line {
     if (this.#isTerminated) worker.terminate();
     this.#worker = worker;
     worker.postMessage({ module: this.#module, shared: this.#flag?.buffer });
-    const facts = await begun;
+    const facts = await begun.catch((error) => {
+      worker.terminate();
+      throw error;
+    });
     if (!this.#running) worker.unref?.();  // an idle worker keeps no program of Node alive
     return facts;
   }
