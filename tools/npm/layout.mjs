@@ -66,5 +66,6 @@ if (process.argv[1] && realpathSync(process.argv[1]) === fileURLToPath(import.me
     console.error('usage: node layout.mjs INCLUDE-FOLDER OUTPUT');
     process.exit(2);
   }
-  writeFileSync(output, `// Made of tessera_c*.h by layout.mjs.\nexport const layout = ${JSON.stringify(layoutOf(include))};\n`);
+  const layout = JSON.stringify(layoutOf(include));
+  writeFileSync(output, `// Made of tessera_c*.h by layout.mjs.\nexport const layout = ${layout};\n`);
 }
