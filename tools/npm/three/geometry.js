@@ -1,15 +1,8 @@
 // Geometries of three.js from meshes of the package.
 import { BufferAttribute, BufferGeometry, Color, SRGBColorSpace } from 'three';
 
-/** An array that stays: a copy, if it is a view into the memory of a module. */
-const owned = (array) => (array && array.byteLength < array.buffer.byteLength ? array.slice() : array);
-
-/** The arrays of a mesh, of the package or of its worker, as own ones. */
-export async function arraysOf(mesh) {
-  const names = ['positions', 'normals', 'parameters', 'triangles', 'trianglePatches', 'edges'];
-  const arrays = await Promise.all(names.map((name) => mesh[name]));
-  return Object.fromEntries(names.map((name, k) => [name, owned(arrays[k])]));
-}
+/** The arrays of a mesh, of the package or of its worker, as copies that stay. */
+export async function arraysOf(mesh) { return mesh.copy(); }
 
 /** The surface of each triangle, and of each vertex. `patchSurfaces`: the surface of each patch. */
 export function surfacesOf({ positions, triangles, trianglePatches }, patchSurfaces) {

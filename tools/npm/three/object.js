@@ -103,7 +103,7 @@ export class ModelObject extends Group {
       this.#plan = await this.patches.plan({ pixels: this.pixels, view, parameters: 'surface', ...this.planOptions });
       this.#mesh = await this.#plan.write(this.#mesh);
     }
-    const numbers = await numbersOf(this.#plan), arrays = await arraysOf(this.#mesh);
+    const arrays = await arraysOf(this.#mesh), numbers = numbersOf(this.#plan);
     const milliseconds = performance.now() - start;
     const surfaces = surfacesOf(arrays, this.#patchSurfaces);
     const curvatures = await this.#curvatures(arrays, surfaces);
@@ -202,8 +202,5 @@ export class ModelObject extends Group {
   }
 }
 
-async function numbersOf(plan) {
-  const names = ['triangles', 'vertices', 'pixels', 'bound', 'gap', 'openEdges', 'crossedPatches', 'isCertified', 'seenBound'];
-  const values = await Promise.all(names.map((name) => plan[name]));
-  return Object.fromEntries(names.map((name, k) => [name, values[k]]));
-}
+const planNumbers = ['triangles', 'vertices', 'pixels', 'bound', 'seenBound', 'gap', 'openEdges', 'crossedPatches', 'isCertified'];
+function numbersOf(plan) { return Object.fromEntries(planNumbers.map((name) => [name, plan[name]])); }

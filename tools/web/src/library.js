@@ -9,7 +9,8 @@ class Workers {
   #module = compile(moduleAddress);
   #next = null;
 
-  prepare() { return (this.#next ??= this.#module.then((module) => init(module))); }
+  another() { return this.#module.then((module) => init(module)); }
+  prepare() { return (this.#next ??= this.another()); }
   take() {
     const taken = this.prepare();
     this.#next = null;
@@ -17,20 +18,44 @@ class Workers {
   }
 }
 const workers = new Workers();
-export const prepare = () => workers.prepare();
+let hasOpened = false;
 
-const cancelled = () => new DOMException('cancelled', 'AbortError');
-/** Rejects as soon as the signal is raised, and closes the worker, which stops whatever it does. */
-function unlessAborted(signal, tessera, work) {
-  return new Promise((resolve, reject) => {
-    const stop = () => {
-      tessera.dispose();
-      reject(cancelled());
-    };
-    if (signal.aborted) return stop();
-    signal.addEventListener('abort', stop, { once: true });
-    work().then(resolve, reject).finally(() => signal.removeEventListener('abort', stop));
-  });
+/**
+ * Makes a worker ready, and reads a small file in another: browsers compile what has run a while once more, and better,
+ * for all workers that share the module.
+ */
+export async function prepare() {
+  await workers.prepare();
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  const response = await fetch(new URL('../models/bearing_block.step', import.meta.url));
+  if (!response.ok || hasOpened) return;
+  const tessera = await workers.another();
+  const model = await tessera.open('warm.step', new Uint8Array(await response.arrayBuffer()));
+  const patches = await model.patches();
+  for (let k = 1; k <= 3 && !hasOpened; ++k) {
+    const plan = await patches.plan({ pixels: 0.5, edges: true, view: warmView(await patches.box, k) });
+    await plan.write();
+  }
+  tessera.terminate();
+}
+function warmView({ low, high }, k) {
+  const target = low.map((value, c) => (value + high[c]) / 2), size = Math.hypot(...low.map((value, c) => high[c] - value));
+  return { eye: target.map((value, c) => value + size * [1, -1, 0.2 * k][c]), target };
+}
+
+/** Does work with a worker that ends as soon as the signal is raised, whatever it does then, or if the work fails. */
+async function within(signal, tessera, work) {
+  const stop = () => tessera.terminate();
+  signal.addEventListener('abort', stop);
+  try {
+    signal.throwIfAborted();
+    return await work();
+  } catch (error) {
+    stop();
+    throw signal.aborted ? signal.reason : error;
+  } finally {
+    signal.removeEventListener('abort', stop);
+  }
 }
 
 /** A model that is open: its patches, its object in the scene, and what can be asked about it. */
@@ -42,17 +67,15 @@ export class Document {
 
   /** Reads a source { name, bytes() }; `progress(words, share)` is told how far it is. */
   static async open(source, { signal, progress }) {
+    hasOpened = true;
     const bytes = await source.bytes();
     const tessera = await workers.take();
     try {
-      return await unlessAborted(signal, tessera, async () => {
+      return await within(signal, tessera, async () => {
         const made = new Document();
         await made.#read(tessera, source, bytes, progress);
         return made;
       });
-    } catch (error) {
-      tessera.dispose();
-      throw error;
     } finally {
       workers.prepare();
     }
@@ -106,14 +129,14 @@ export class Document {
   async measure({ signal, progress }) {
     const bytes = await this.source.bytes(), tessera = await workers.take();
     try {
-      return await unlessAborted(signal, tessera, async () => {
+      return await within(signal, tessera, async () => {
         const model = await tessera.open(this.name, bytes, { progress: (share) => progress(0.2 * share) });
         return model.measure({ progress: (share) => progress(0.2 + 0.8 * share) });
       });
     } finally {
-      tessera.dispose();
+      tessera.terminate();
     }
   }
 
-  close() { this.#tessera.dispose(); }
+  close() { this.#tessera.terminate(); }
 }

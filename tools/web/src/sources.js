@@ -1,11 +1,6 @@
 // Where files come from: dropped, chosen, pasted, an example, or the address of the page.
+import { examples } from './examples.js';
 import { element } from './format.js';
-
-const examples = [
-  ['bearing_block.step', 'Bearing block (STEP)'], ['teapot.bpt', 'Teapot (bpt)'], ['goblet.json', 'Goblet (JSON)'],
-  ['seashell.json', 'Seashell (JSON)'], ['trimmed_crossing_cylinders.json', 'Crossing cylinders (JSON)'],
-  ['enneper.json', 'Enneper surface (JSON)'],
-];
 
 const ofBlob = (name, blob) => ({ name, bytes: async () => new Uint8Array(await blob.arrayBuffer()) });
 function ofAddress(address, name) {
