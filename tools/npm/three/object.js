@@ -33,6 +33,15 @@ export class ModelObject extends Group {
     return new ModelObject(patches, { faces, patchSurfaces, origin, ...options });
   }
 
+  /** Makes what draws triangles and edges, with the materials of all objects: to compile their programs early. */
+  static drawables(triangles, edges) {
+    const mesh = new Mesh(triangles, new MeshStandardMaterial({
+      vertexColors: true, side: DoubleSide, roughness: 0.55, metalness: 0.05, polygonOffset: true,
+      polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    }));
+    return { mesh, lines: new LineSegments(edges, new LineBasicMaterial({ color: 0x1a1f24 })) };
+  }
+
   constructor(patches, { faces, patchSurfaces, origin, pixels = 0.5, colours = 'surface', edges = true,
     plain = '#b8c0c8', highlight = '#ff9f2e', plan = {} }) {
     super();
@@ -43,11 +52,7 @@ export class ModelObject extends Group {
     this.hidden = new Uint8Array(faces.length);
     this.selected = new Uint8Array(faces.length);
     this.highlight = new Color(highlight);
-    this.mesh = new Mesh(undefined, new MeshStandardMaterial({
-      vertexColors: true, side: DoubleSide, roughness: 0.55, metalness: 0.05, polygonOffset: true,
-      polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-    }));
-    this.lines = new LineSegments(undefined, new LineBasicMaterial({ color: 0x1a1f24 }));
+    Object.assign(this, ModelObject.drawables());
     for (const each of [this.mesh, this.lines]) {
       each.position.set(...origin);
       each.frustumCulled = false;

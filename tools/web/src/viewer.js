@@ -4,6 +4,7 @@ import {
   PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { ModelObject } from 'tessera/three';
 
 const fieldOfView = 30, patience = 80;  // degrees; milliseconds that a picture waits for its proof
 const isCalm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -27,6 +28,7 @@ export class Viewer {
   #camera = new PerspectiveCamera(fieldOfView, 1, 0.01, 100);
   #controls;
   #eye = new PerspectiveCamera();  // the camera of the last picture, with a lamp
+  #sky = new HemisphereLight(0xffffff, 0x8f979f, 1.9);
   #wire = new Mesh(undefined, new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.55 }));
   #flat = new MeshBasicMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   #dot = new Points(new BufferGeometry(), dotMaterial());
@@ -48,11 +50,10 @@ export class Viewer {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#renderer.setClearAlpha(0);
     this.#camera.up.set(0, 0, 1);
-    const lamp = new DirectionalLight(0xffffff, 1.7), sky = new HemisphereLight(0xffffff, 0x8f979f, 1.9);
+    const lamp = new DirectionalLight(0xffffff, 1.7);
     lamp.position.set(-0.5, 0.7, 1);
-    sky.position.set(0, 0, 1);
+    this.#sky.position.set(0, 0, 1);
     this.#eye.add(lamp, lamp.target);
-    this.#scene.add(this.#eye, sky, this.#wire, this.#dot);
     this.#dot.geometry.setAttribute('position', new BufferAttribute(new Float32Array(3), 3));
     for (const each of [this.#wire, this.#dot]) {
       each.frustumCulled = false;
@@ -64,6 +65,20 @@ export class Viewer {
     this.#controls.addEventListener('change', () => this.redraw());
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     this.#resize();
+    this.#warm();
+  }
+  // The graphics card's programs are compiled before there is a model, and kept.
+  #warm() {
+    const geometry = new BufferGeometry();
+    for (const [name, size] of [['position', 3], ['normal', 3], ['color', 4], ['uv', 2]])
+      geometry.setAttribute(name, new BufferAttribute(name === 'color' ? new Uint16Array(12) : new Float32Array(9), size, true));
+    const still = new Scene(), { mesh, lines } = ModelObject.drawables(geometry, geometry);
+    still.add(mesh, lines, this.#wire, this.#dot, new Mesh(geometry, this.#flat), this.#eye, this.#sky);
+    for (const each of [this.#wire, this.#dot]) each.visible = true;
+    this.#wire.geometry = geometry;
+    this.#renderer.render(still, this.#eye);
+    for (const each of [this.#wire, this.#dot]) each.visible = false;
+    this.#scene.add(this.#eye, this.#sky, this.#wire, this.#dot);
   }
 
   get object() { return this.#object; }
