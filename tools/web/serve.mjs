@@ -1,5 +1,6 @@
 // Serves the page on this machine alone:  node serve.mjs [--port 8080] [part.step]
-import { createReadStream, existsSync, realpathSync, statSync } from 'node:fs';
+import { randomBytes } from 'node:crypto';
+import { createReadStream, existsSync, readFileSync, realpathSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { basename, dirname, extname, join, resolve, sep } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -34,6 +35,18 @@ function fileOf(folders, path) {
   return realpathSync(file).startsWith(realpathSync(folder) + sep) ? file : null;
 }
 
+/** Sends a page that may use this server alone: its scripts are marked by a number that nobody else knows. */
+function sendPage(response, file, type) {
+  const nonce = randomBytes(16).toString('hex');
+  const policy = `default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-${nonce}'; worker-src 'self'; connect-src 'self'; ` +
+    "style-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+  response.writeHead(200, { ...headers, 'Content-Type': type, 'Content-Security-Policy': policy });
+  response.end(readFileSync(file, 'utf8').replaceAll('<script', `<script nonce="${nonce}"`));
+}
+
+/** The address of the page that shows /model/NAME: the page decodes its query once, and the server the path in it. */
+const addressOf = (name) => `?model=${encodeURIComponent(`/model/${encodeURIComponent(name)}`)}`;
+
 /** Makes the server. `model`: a file that is served as /model/NAME. */
 export function serverOf({ folders = foldersOf(), model = null } = {}) {
   return createServer((request, response) => {
@@ -50,6 +63,7 @@ export function serverOf({ folders = foldersOf(), model = null } = {}) {
     const file = path.startsWith('/model/') ? (model && path === `/model/${basename(model)}` ? model : null) : fileOf(folders, path);
     if (!file) return answer(404, 'no such file\n');
     const size = statSync(file).size, type = types[extname(file).toLowerCase()] ?? 'application/octet-stream';
+    if (type.startsWith('text/html')) return sendPage(response, file, type);
     response.writeHead(200, { ...headers, 'Content-Type': type, 'Content-Length': size });
     if (request.method === 'HEAD') return response.end();
     return createReadStream(file).on('error', () => response.destroy()).pipe(response);
@@ -74,7 +88,7 @@ function main(words) {
     process.exitCode = 1;
   });
   server.listen(port, '127.0.0.1', () => {
-    const query = model ? `?model=/model/${encodeURIComponent(basename(model))}` : '';
+    const query = model ? addressOf(basename(model)) : '';
     console.log(`http://localhost:${server.address().port}/${query}`);
   });
   return 0;

@@ -3,15 +3,12 @@ import type {
   MeshStandardMaterial, Object3D,
 } from 'three';
 
+import type { SurfaceInfo } from '../index.js';
+
 type Now<T> = T | Promise<T>;
 
-/** What is known of a surface, as model.surface() returns it. */
-export interface Face {
-  name: string | null; kind: string | null; domain: number[];
-  instance: number | null; shape: number | null; face: number | null;
-  /** Red, green, blue and opacity from 0 to 1, in sRGB. */
-  colour: number[] | null;
-}
+/** What is known of a surface. */
+export type Face = SurfaceInfo;
 /** A view as plan({ view }) takes it. */
 export interface View {
   eye: number[]; target: number[]; up: number[]; width: number; height: number;
@@ -20,9 +17,7 @@ export interface View {
 
 /** The objects of the package or of its worker: members may be promises. */
 export interface AnyModel {
-  surfaces?(): Now<Face[]>;
-  surface(index: number): Now<Face>;
-  readonly surfaceCount: Now<number>;
+  surfaces(): Now<Face[]>;
 }
 export interface AnyMesh {
   copy(): Now<Arrays>;
@@ -71,8 +66,6 @@ export function geometryOf(arrays: Arrays, options: Surfaces & {
 /** Edges of shapes for LineSegments, over the positions of `geometry`; `plan({ edges: true })` prepares them. */
 export function edgeGeometryOf(geometry: BufferGeometry, arrays: Arrays,
   options?: { ofVertices?: Uint32Array; hidden?: Uint8Array }): BufferGeometry;
-/** All surfaces of a model. */
-export function facesOf(model: AnyModel): Promise<Face[]>;
 
 export interface Shown {
   triangles: number; vertices: number; pixels: number; bound: number; seenBound: number; gap: number;

@@ -6,12 +6,6 @@ import { viewOf } from './view.js';
 
 const known = ['pixels', 'colours', 'edges', 'plain', 'highlight', 'plan'];
 
-/** Surfaces of a model as model.surface() has them, all at once. */
-export async function facesOf(model) {
-  if (model.surfaces) return model.surfaces();
-  const count = await model.surfaceCount;
-  return Promise.all(Array.from({ length: count }, (_, k) => model.surface(k)));
-}
 
 export class ModelObject extends Group {
   #plan = null;
@@ -29,7 +23,7 @@ export class ModelObject extends Group {
   static async make(model, patches, options = {}) {
     for (const name of Object.keys(options))
       if (!known.includes(name)) throw new Error(`ModelObject: there is no option ${name}; there are ${known.join(', ')}`);
-    const [faces, patchSurfaces, origin] = await Promise.all([facesOf(model), patches.surfaces, patches.origin]);
+    const [faces, patchSurfaces, origin] = await Promise.all([model.surfaces(), patches.surfaces, patches.origin]);
     return new ModelObject(patches, { faces, patchSurfaces, origin, ...options });
   }
 
