@@ -47,6 +47,7 @@ export class ModelObject extends Group {
     this.selected = new Uint8Array(faces.length);
     this.highlight = new Color(highlight);
     Object.assign(this, ModelObject.drawables());
+    this.mesh.material.transparent = faces.some(({ colour }) => colour?.[3] < 1);
     for (const each of [this.mesh, this.lines]) {
       each.position.set(...origin);
       each.frustumCulled = false;
@@ -123,22 +124,24 @@ export class ModelObject extends Group {
   #take(curvatures) {
     const geometry = geometryOf(this.#arrays, { ...this.#surfaces, palette: this.#palette, hidden: this.hidden });
     const lines = edgeGeometryOf(geometry, this.#arrays, { ...this.#surfaces, hidden: this.hidden });
-    if (curvatures) geometry.setAttribute('curvature', new BufferAttribute(curvatures.values, 1));
+    if (curvatures) geometry.setAttribute('curvature', Object.assign(new BufferAttribute(curvatures.values, 1), { kind: curvatures.kind }));
     for (const [object, its] of [[this.mesh, geometry], [this.lines, lines]]) {
       object.geometry.dispose();
       object.geometry = its;
     }
-    this.#colour(curvatures?.kind);
+    this.#colour();
   }
-  #colour(kind) {
+  #colour() {
     const { geometry } = this.mesh, colours = geometry.getAttribute('color'), { array } = colours;
     const curvature = geometry.getAttribute('curvature'), { ofVertices } = this.#surfaces;
-    if (curvature && kind) colourByCurvature(array, curvature.array, kind, this.curvatureRanges[kind]);
+    const kind = curvature && curvature.kind;
+    if (kind) colourByCurvature(array, curvature.array, kind, this.curvatureRanges[kind]);
     else colourBySurface(array, ofVertices, this.#palette);
-    const mark = this.highlight.toArray().map((value) => Math.round(65535 * value));
+    const mark = this.highlight.toArray().map((value) => 65535 * value), share = kind ? 0.25 : 0.85;
     if (this.selected.includes(1))
       for (let k = 0; k < ofVertices.length; ++k)
-        if (this.selected[ofVertices[k]]) for (let c = 0; c < 3; ++c) array[4 * k + c] = mark[c];
+        if (this.selected[ofVertices[k]])
+          for (let c = 0; c < 3; ++c) array[4 * k + c] += share * (mark[c] - array[4 * k + c]);
     colours.needsUpdate = true;
   }
 
@@ -156,14 +159,14 @@ export class ModelObject extends Group {
   select(surfaces) {
     this.selected.fill(0);
     for (const surface of surfaces) this.selected[surface] = 1;
-    if (this.#arrays) this.#colour(this.mesh.geometry.getAttribute('curvature') && this.colours);
+    if (this.#arrays) this.#colour();
   }
   /** Hides surfaces, or shows them again. */
   hide(surfaces, isHidden = true) {
     for (const surface of surfaces) this.hidden[surface] = isHidden ? 1 : 0;
     if (!this.#arrays) return;
     const curvature = this.mesh.geometry.getAttribute('curvature');
-    this.#take(curvature && { kind: this.colours, values: curvature.array });
+    this.#take(curvature && { kind: curvature.kind, values: curvature.array });
   }
   /** The surface of a triangle, as an intersection of three's Raycaster names it by faceIndex. */
   surfaceOf(faceIndex) { return this.mesh.geometry.userData.surfaces?.[faceIndex] ?? null; }

@@ -64,8 +64,14 @@ async function take(next) {
   numbers = new Numbers($('numbers'), next, measure);
   open = next;
   $('main').classList.remove('is-empty');
-  await viewer.show(next.object, next.box);
-  former?.close();
+  try {
+    await viewer.show(next.object, next.box);
+  } catch (error) {
+    forget(next);
+    throw error;
+  } finally {
+    former?.close();
+  }
   performance.measure('picture', 'open');
   parts = new Parts($('parts'), next, { select, hide, zoom });
   showFace($('face'), next, null);
@@ -74,6 +80,18 @@ async function take(next) {
   for (const id of ['save', 'fit', 'modes']) $(id).disabled = false;
   say(`${next.name}: ${counted(next.faces.length, 'face')}, ${counted(next.object.shown.triangles, 'triangle')}.` +
     (next.warnings.length ? ` ${counted(next.warnings.length, 'warning')}.` : ''));
+}
+
+/** Goes back to an empty page: the model could be read, but no picture be made. */
+function forget(document) {
+  viewer.clear();
+  viewer.redraw();
+  document.close();
+  open = null;
+  $('main').classList.add('is-empty');
+  $('file').textContent = 'No file open';
+  for (const id of ['save', 'fit', 'modes']) $(id).disabled = true;
+  $('proof').hidden = $('legend').hidden = true;
 }
 
 function showProof({ isProven }) {

@@ -1,5 +1,6 @@
 // What is said about a model beside its picture: the face that is picked, numbers, and parts.
 import { count, counted, element, length, proven, short, terms } from './format.js';
+import { plainName } from './parts.js';
 
 const quiet = (text) => element('p', { className: 'quiet' }, text);
 const point = (values, digits) => values.map((value) => short(value, digits)).join(', ');
@@ -21,9 +22,9 @@ function radius(curvature, scale, unit) {
 export function showFace(place, document, hit) {
   if (!hit) return place.replaceChildren(quiet('Click a face, or press Enter in the picture.'));
   const face = document.faces[hit.surface], { unit } = document, scale = document.diagonal;
-  const instance = face.instance === null ? null : document.instances[face.instance].name;
+  const instance = face.instance === null ? null : plainName(document.instances[face.instance].name);
   place.replaceChildren(terms([
-    ['Name', face.name || 'none'], ['Part', instance], ['Colour', swatch(face.colour)],
+    ['Name', plainName(face.name) ?? 'none'], ['Part', instance], ['Colour', swatch(face.colour)],
     ['Surface', `${face.kind}, number ${count(hit.surface)}`],
     ['u, v', `${short(hit.u, 7)}, ${short(hit.v, 7)}`],
     ['Point', point(hit.position, 7)], ['Normal', point(hit.normal, 4)],

@@ -8,22 +8,29 @@ let ids = 0;
 function branchesOf({ instances, shapes, faces }) {
   const surfacesOf = instances.map(() => []), free = [];
   faces.forEach((face, k) => (face.instance === null ? free : surfacesOf[face.instance]).push(k));
-  const face = (k) => ({ name: faces[k].name || `Face ${k}`, note: faces[k].kind, surfaces: [k] });
+  const face = (k) => ({ name: nameOfFace(faces[k], k, shapes), note: faces[k].kind, surfaces: [k] });
   const instance = (k, name = instances[k].name) => ({
-    name: name || `Part ${k}`, note: count(surfacesOf[k].length), surfaces: surfacesOf[k],
+    name: plainName(name) ?? `Part ${k + 1}`, note: count(surfacesOf[k].length), surfaces: surfacesOf[k],
     children: () => surfacesOf[k].map(face),
   });
   const ofShapes = shapes.map(() => []);
   instances.forEach(({ shape }, k) => ofShapes[shape]?.push(k));
   const branches = ofShapes.flatMap((its, k) => {
-    if (its.length === 1) return [instance(its[0], plainName(shapes[k].name) ?? instances[its[0]].name)];
+    if (its.length === 1) return [instance(its[0], plainName(shapes[k].name) ?? undefined)];
     if (its.length === 0) return [];
     const surfaces = its.flatMap((each) => surfacesOf[each]);
-    return [{ name: shapes[k].name || `Shape ${k}`, note: `× ${its.length}`, surfaces, children: () => its.map((each) => instance(each)) }];
+    return [{ name: plainName(shapes[k].name) ?? `Shape ${k + 1}`, note: `× ${its.length}`, surfaces, children: () => its.map((each) => instance(each)) }];
   });
   return [...branches, ...free.map(face)];
 }
-const plainName = (name) => (name && name !== 'NONE' ? name : null);
+
+/** A name, or null where there is none: many programs write NONE. */
+export const plainName = (name) => (name && name !== 'NONE' ? name : null);
+/** The name of a face; its number where it has but that of its shape. */
+function nameOfFace({ name, shape, face }, k, shapes) {
+  const own = plainName(name);
+  return own && own !== shapes[shape]?.name ? own : `Face ${face ?? k}`;
+}
 
 export class Parts {
   #rows = [];  // { surfaces, row, box }

@@ -28,7 +28,6 @@ export class Viewer {
   #camera = new PerspectiveCamera(fieldOfView, 1, 0.01, 100);
   #controls;
   #eye = new PerspectiveCamera();  // the camera of the last picture, with a lamp
-  #sky = new HemisphereLight(0xffffff, 0x8f979f, 1.9);
   #wire = new Mesh(undefined, new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.55 }));
   #flat = new MeshBasicMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   #dot = new Points(new BufferGeometry(), dotMaterial());
@@ -42,6 +41,8 @@ export class Viewer {
   #drawn = 0;  // when
   #flight = null;
   #failed = null;
+  #kept = null;  // what keeps programs alive
+  #ready;
 
   /** `onPicture({ isProven })` is called for each picture, `onError(error)` if a plan fails. */
   constructor(canvas, { onPicture, onError }) {
@@ -50,10 +51,11 @@ export class Viewer {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#renderer.setClearAlpha(0);
     this.#camera.up.set(0, 0, 1);
-    const lamp = new DirectionalLight(0xffffff, 1.7);
+    const lamp = new DirectionalLight(0xffffff, 1.7), sky = new HemisphereLight(0xffffff, 0x8f979f, 1.9);
     lamp.position.set(-0.5, 0.7, 1);
-    this.#sky.position.set(0, 0, 1);
+    sky.position.set(0, 0, 1);
     this.#eye.add(lamp, lamp.target);
+    this.#scene.add(this.#eye, sky, this.#wire, this.#dot);
     this.#dot.geometry.setAttribute('position', new BufferAttribute(new Float32Array(3), 3));
     for (const each of [this.#wire, this.#dot]) {
       each.frustumCulled = false;
@@ -65,20 +67,22 @@ export class Viewer {
     this.#controls.addEventListener('change', () => this.redraw());
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     this.#resize();
-    this.#warm();
+    this.#ready = this.#warm();
   }
-  // The graphics card's programs are compiled before there is a model, and kept.
-  #warm() {
+  // The graphics card's programs are compiled before there is a model, while the page goes on, and kept.
+  async #warm() {
+    await new Promise((resolve) => setTimeout(resolve, 50));
     const geometry = new BufferGeometry();
     for (const [name, size] of [['position', 3], ['normal', 3], ['color', 4], ['uv', 2]])
       geometry.setAttribute(name, new BufferAttribute(name === 'color' ? new Uint16Array(12) : new Float32Array(9), size, true));
-    const still = new Scene(), { mesh, lines } = ModelObject.drawables(geometry, geometry);
-    still.add(mesh, lines, this.#wire, this.#dot, new Mesh(geometry, this.#flat), this.#eye, this.#sky);
-    for (const each of [this.#wire, this.#dot]) each.visible = true;
-    this.#wire.geometry = geometry;
-    this.#renderer.render(still, this.#eye);
-    for (const each of [this.#wire, this.#dot]) each.visible = false;
-    this.#scene.add(this.#eye, this.#sky, this.#wire, this.#dot);
+    const places = new BufferGeometry().setAttribute('position', geometry.getAttribute('position'));
+    const still = new Scene(), { mesh, lines } = ModelObject.drawables(geometry, places);
+    still.add(mesh, lines, new Mesh(geometry, this.#wire.material), new Mesh(geometry, this.#flat), new Points(places, this.#dot.material));
+    // Programs depend on the lights, which are those of the scene.
+    const renderer = this.#renderer, isParallel = renderer.extensions.has('KHR_parallel_shader_compile');
+    if (isParallel) await renderer.compileAsync(still, this.#eye, this.#scene);
+    else renderer.compile(still, this.#eye, this.#scene);
+    this.#kept = still;
   }
 
   get object() { return this.#object; }
@@ -103,7 +107,7 @@ export class Viewer {
     this.#clip();
     const camera = this.#camera.clone();
     const { width, height } = this.size;
-    await object.update(camera, width, height);
+    await Promise.all([object.update(camera, width, height), this.#ready]);
     if (this.#object === object) this.#draw(camera, true);
   }
   clear() {
@@ -125,7 +129,7 @@ export class Viewer {
     const half = Math.tan(fieldOfView * Math.PI / 360), corner = new Vector3();
     let distance = this.#radius * 2e-3;
     for (let k = 0; k < 8; ++k) {
-      corner.set(...[0, 1, 2].map((c) => (k >> c & 1 ? high : low)[c])).sub(centre).multiplyScalar(1.12);
+      corner.set(...[0, 1, 2].map((c) => (k >> c & 1 ? high : low)[c])).sub(centre).multiplyScalar(1.08);
       const across = Math.abs(corner.dot(right)) / this.#camera.aspect, above = Math.abs(corner.dot(up));
       distance = Math.max(distance, corner.dot(back) + Math.max(across, above) / half);
     }
@@ -235,6 +239,7 @@ export class Viewer {
     if (this.#controls.update()) this.redraw();
     const object = this.#object;
     if (!object) return this.#renderer.clear();
+    if (!object.shown) return undefined;
     this.#clip();
     const camera = this.#camera, { width, height } = this.size;
     if (object.isProvenFor(camera, width, height) && !this.#flight) return this.#draw(camera, true);
