@@ -77,7 +77,10 @@ export class Tab {
       ?.nextElementSibling.textContent ?? null, name);
   }
   /** The picture's pixels, to compare. */
-  async picture() { return Buffer.from(await (await this.page.$('#picture')).screenshot()).toString('base64'); }
+  async picture() {
+    const canvas = await this.page.$('#picture');
+    return Buffer.from(await canvas.screenshot()).toString('base64');
+  }
   async key(name, shift = false) {
     await this.page.focus('#picture');
     if (shift) await this.page.keyboard.down('Shift');
@@ -90,6 +93,7 @@ export class Tab {
 /** The JSON of a .glb file, checked in its lengths. */
 export function glbOf(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (view.getUint32(0, true) !== 0x46546c67 || view.getUint32(8, true) !== bytes.length) throw new Error('no .glb file');
+  const isWhole = view.getUint32(0, true) === 0x46546c67 && view.getUint32(8, true) === bytes.length;
+  if (!isWhole) throw new Error('this is no .glb file');
   return JSON.parse(new TextDecoder().decode(bytes.subarray(20, 20 + view.getUint32(12, true))));
 }

@@ -38,7 +38,8 @@ async function dropAndFollow({ assert, browser, server }) {
   assert.notEqual(await trianglesOf(tab), before, 'the triangles follow the camera');
   const pixels = Number(/[\d.]+/.exec(await tab.row('Picture'))[0]);
   assert.ok(pixels > 0 && pixels <= 0.5, `${pixels} pixels`);
-  assert.ok(tab.requests.every((url) => url.startsWith(server.address) || url.startsWith('blob:')), 'no other server is asked');
+  const isOwn = (url) => url.startsWith(server.address) || url.startsWith('blob:');
+  assert.ok(tab.requests.every(isOwn), 'no other server is asked');
   assert.deepEqual(tab.faults, []);
 }
 
@@ -123,7 +124,8 @@ async function save({ assert, browser, server, native }) {
       .reduce((sum, { indices }) => sum + accessors[indices].count / 3, 0);
     const [found, wanted] = [trianglesIn(glb), trianglesIn(its)];
     assert.ok(Math.abs(found - wanted) < 0.03 * wanted, `${found} triangles, the native program writes ${wanted}`);
-    const coloursIn = ({ materials }) => materials.map((each) => each.pbrMetallicRoughness.baseColorFactor.join()).sort();
+    const coloursIn = ({ materials }) =>
+      materials.map((each) => each.pbrMetallicRoughness.baseColorFactor.join()).sort();
     assert.deepEqual([...new Set(coloursIn(glb))], [...new Set(coloursIn(its))]);
   }
   rmSync(downloads, { recursive: true });
@@ -133,7 +135,10 @@ async function save({ assert, browser, server, native }) {
 async function errors({ assert, browser, server, folder }) {
   const { init } = await import(pathToFileURL(join(folder, 'tessera/index.js')).href), tessera = await init();
   const tab = await opened(browser, server.address, 'teapot.bpt');
-  const broken = { 'broken.stp': 'ISO-10303-21;\nHEADER;\nBROKEN', 'broken.json': '{"surfaces": [{"type": "bezier", 3]}', 'empty.step': '' };
+  const broken = {
+    'broken.stp': 'ISO-10303-21;\nHEADER;\nBROKEN',
+    'broken.json': '{"surfaces": [{"type": "bezier", 3]}', 'empty.step': '',
+  };
   for (const [name, text] of Object.entries(broken)) {
     let sentence = null;
     try { tessera.read(name, text); } catch (error) { sentence = error.message; }
@@ -192,7 +197,8 @@ async function touch({ assert, browser, server }) {
   const tab = await opened(browser, server.address, 'goblet.json', { width: 375, height: 740, touch: true });
   assert.equal(await tab.evaluate(() => document.documentElement.scrollWidth), 375, 'nothing is wider than a phone');
   const { x, y } = await centreOf(tab), session = await tab.page.createCDPSession();
-  const touches = (type, ...points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
+  const touches = (type, ...points) => session.send('Input.dispatchTouchEvent',
+    { type, touchPoints: points.map(([px, py], id) => ({ x: px, y: py, id })) });
   const before = await trianglesOf(tab);
   await touches('touchStart', [x - 30, y], [x + 30, y]);
   for (let k = 1; k <= 8; ++k) await touches('touchMove', [x - 30 - 8 * k, y], [x + 30 + 8 * k, y]);
@@ -212,7 +218,8 @@ async function touch({ assert, browser, server }) {
 
 async function colours({ assert, browser, server }) {
   const ground = (tab) => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  const light = await Tab.open(browser, server.address), dark = await Tab.open(browser, server.address, { scheme: 'dark' });
+  const light = await Tab.open(browser, server.address);
+  const dark = await Tab.open(browser, server.address, { scheme: 'dark' });
   assert.notEqual(await ground(light), await ground(dark));
   await light.page.select('#theme', 'dark');
   assert.equal(await ground(light), await ground(dark));
@@ -279,7 +286,9 @@ async function serverIsClosed({ assert, server }) {
       .on('error', reject).end();
   });
   assert.equal(await statusOf('/'), 200);
-  for (const path of ['/../../../../etc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '/src/..%2f..%2f..%2fetc/passwd', '/.git/config', '/src', '/model/x', '/%00', '/%'])
+  const outside = ['/../../../../etc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '/src/..%2f..%2f..%2fetc/passwd',
+    '/.git/config', '/src', '/model/x', '/%00', '/%'];
+  for (const path of outside)
     assert.ok([400, 404].includes(await statusOf(path)), path);
   assert.equal(await statusOf('/', { host: 'example.com' }), 403);
   assert.equal(await statusOf('/', {}, 'POST'), 405);
@@ -290,7 +299,8 @@ async function audit({ assert, browser, server }) {
   const check = async (tab, where) => {
     await tab.evaluate(axe());
     const { violations } = await tab.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-    for (const { id, nodes } of violations) faults.push(`${where}: ${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(' | ')}`);
+    for (const { id, nodes } of violations)
+      faults.push(`${where}: ${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(' | ')}`);
   };
   for (const [scheme, width] of [['light', 1280], ['dark', 1280], ['light', 375]]) {
     const tab = await Tab.open(browser, server.address, { scheme, width });

@@ -1,78 +1,109 @@
 // Measures how fast the page is, in Chromium without a window:
 //   node speed.mjs BROWSER PAGE FILE.step ORBITED-FILE [FOLDER-OF-OCCT-IMPORT-JS]
-// Prints the best and the median of several runs. occt-import-js is not fetched by the project: name its folder.
+// Prints the best, the median and the worst of several runs. The blocks of the main thread are the longest tasks of a
+// run, by the clock and by the time that the thread itself ran, which other programs do not lengthen.
+// occt-import-js is not fetched by the project: name its folder.
 import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { join } from 'node:path';
-import { basename } from 'node:path';
+import { basename, join } from 'node:path';
 import { Tab, launch, serve } from './browser.mjs';
 
 const [executable, folder, file, orbited, occt] = process.argv.slice(2);
 const runs = 7;
-const browser = await launch(executable), server = await serve(folder);
-const report = (name, values, unit = 'ms') => {
-  const sorted = [...values].sort((a, b) => a - b), at = (share) => sorted[Math.floor(share * (sorted.length - 1))].toFixed(1);
-  console.log(`${name}: best ${at(0)}, median ${at(0.5)}, worst ${at(1)} ${unit}`);
-};
+const browser = await launch(executable);
 const pause = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+function report(name, values) {
+  const sorted = [...values].sort((a, b) => a - b), at = (share) => Math.floor(share * (sorted.length - 1));
+  const [best, median, worst] = [0, 0.5, 1].map((share) => sorted[at(share)].toFixed(1));
+  console.log(`${name}: best ${best}, median ${median}, worst ${worst} ms`);
+}
+
+/** Runs `work`; returns the longest task of the page's main thread meanwhile, [by the clock, of the thread]. */
+async function longestTask(tab, work) {
+  await tab.page.tracing.start({ categories: ['toplevel', '__metadata'] });
+  await work();
+  const { traceEvents } = JSON.parse(new TextDecoder().decode(await tab.page.tracing.stop()));
+  const threads = traceEvents.filter(({ name, args }) => name === 'thread_name' && args.name === 'CrRendererMain')
+    .map(({ pid, tid }) => `${pid}:${tid}`);
+  const tasks = traceEvents.filter(({ name, pid, tid }) => /RunTask/.test(name) && threads.includes(`${pid}:${tid}`));
+  return ['dur', 'tdur'].map((time) => Math.max(0, ...tasks.map((task) => (task[time] ?? 0) / 1000)));
+}
+async function withFile(server, name) {
+  const tab = await Tab.open(browser, server.address);
+  await tab.evaluate(async (model) => {
+    window.file = new File([await (await fetch(`model/${model}`)).arrayBuffer()], model);
+  }, name);
+  return tab;
+}
+async function drop(tab, name) {
+  await tab.evaluate(() => {
+    const transfer = new DataTransfer();
+    transfer.items.add(window.file);
+    document.getElementById('stage').dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+  });
+  await tab.shown(name);
+}
 
 /** From the drop to the first picture, in new tabs that have been open for `rest`. */
 async function drops(rest) {
-  const times = [], blocks = [];
+  const times = [], name = basename(file), server = await serve(folder, file);
   for (let k = 0; k < runs; ++k) {
-    const tab = await Tab.open(browser, server.address);
-    await watchBlocks(tab);
+    const tab = await withFile(server, name);
     await pause(rest);
-    await tab.dropFile(file);
-    await tab.shown(basename(file));
+    await drop(tab, name);
     times.push(await tab.evaluate(() => performance.getEntriesByName('picture')[0].duration));
-    blocks.push(await longest(tab));
     await tab.page.close();
   }
-  report(`drop to first picture of ${basename(file)}, after ${rest} ms`, times);
-  report('  longest block of the main thread', blocks);
+  report(`drop to first picture of ${name}, after ${rest} ms`, times);
+  const blocks = [];
+  for (let k = 0; k < 3; ++k) {
+    const tab = await withFile(server, name);
+    await pause(rest);
+    blocks.push(await longestTask(tab, () => drop(tab, name)));
+    await tab.page.close();
+  }
+  report('  longest task of the main thread', blocks.map(([clock]) => clock));
+  report('  longest task, time of the thread', blocks.map(([, thread]) => thread));
+  server.close();
   return Math.min(...times);
 }
-const watchBlocks = (tab) => tab.evaluate(() => {
-  window.blocks = [0];
-  new PerformanceObserver((list) => window.blocks.push(...list.getEntries().map((each) => each.duration)))
-    .observe({ type: 'longtask' });
-});
-const longest = (tab) => tab.evaluate(() => Math.max(...window.blocks));
 
-/** Orbits by the mouse; the numbers of each plan, and how the main thread was blocked. */
+/** Orbits by the mouse: the times of plan and mesh, and how the main thread is blocked. */
 async function orbit() {
-  const tab = await Tab.open(browser, server.address);
-  await pause(4000);
-  await tab.dropFile(orbited);
-  await tab.shown(basename(orbited));
-  for (const round of ['first', 'second']) {
-    await watchBlocks(tab);
+  const name = basename(orbited), server = await serve(folder, orbited), tab = await withFile(server, name);
+  await pause(3000);
+  await drop(tab, name);
+  console.log(`orbit of ${name}: ${await tab.row('Patches')} patches, ${await tab.row('Triangles')} triangles`);
+  for (let round = 0; round < 3; ++round) {
     const plans = [];
-    await tab.page.mouse.move(300, 400);
-    await tab.page.mouse.down();
-    for (let k = 1; k <= 90; ++k) {
-      await tab.page.mouse.move(300 + 5 * k, 400 + (k % 30));
-      await pause(16);
-      plans.push(parseFloat((await tab.row('Plan')).replace(',', '')));
-    }
-    await tab.page.mouse.up();
-    await tab.settled();
-    console.log(`orbit of ${basename(orbited)}, ${await tab.row('Patches')} patches, ${await tab.row('Triangles')} triangles, ${round} time`);
+    const [clock, thread] = await longestTask(tab, async () => {
+      await tab.page.mouse.move(300, 400);
+      await tab.page.mouse.down();
+      for (let k = 1; k <= 60; ++k) {
+        await tab.page.mouse.move(300 + 5 * k, 400 + (k % 30));
+        await pause(16);
+        plans.push(parseFloat((await tab.row('Plan')).replace(',', '')));
+      }
+      await tab.page.mouse.up();
+      await tab.settled();
+    });
     report('  plan, mesh and copies from the worker', plans);
-    console.log(`  longest block of the main thread: ${(await longest(tab)).toFixed(1)} ms`);
+    console.log(`  longest task of the main thread: ${clock.toFixed(1)} ms, time of the thread ${thread.toFixed(1)} ms`);
   }
+  server.close();
   await tab.page.close();
 }
 
-/** The same file by occt-import-js, in a page of this server's origin. */
-async function occtTimes() {
+/** The same file by occt-import-js, in a page of its own, without a picture. */
+async function occtTime() {
   const other = createServer((request, response) => {
-    const name = request.url.slice(1);
-    if (!name) return response.writeHead(200, { 'Content-Type': 'text/html' }).end('<script src=occt-import-js.js></script>');
+    const name = request.url.slice(1), end = name.split('.').at(-1);
+    const type = { wasm: 'application/wasm', js: 'text/javascript' }[end];
+    response.writeHead(200, { 'Content-Type': type ?? 'text/html' });
+    if (!name) return response.end('<script src=occt-import-js.js></script>');
     try {
-      response.writeHead(200, { 'Content-Type': name.endsWith('.wasm') ? 'application/wasm' : 'text/javascript' });
-      return response.end(readFileSync(name === 'file' ? file : join(occt, 'dist', name)));
+      return response.end(readFileSync(name === 'file' ? file : join(occt, 'dist', basename(name))));
     } catch {
       return response.end();
     }
@@ -81,25 +112,25 @@ async function occtTimes() {
   const page = await browser.newPage();
   await page.goto(`http://localhost:${other.address().port}/`);
   const times = await page.evaluate(async (count) => {
-    const occtImport = await window.occtimportjs(), bytes = new Uint8Array(await (await fetch('/file')).arrayBuffer());
+    const reader = await window.occtimportjs(), bytes = new Uint8Array(await (await fetch('/file')).arrayBuffer());
     const found = [];
     for (let k = 0; k < count; ++k) {
       const start = performance.now();
-      if (!occtImport.ReadStepFile(bytes, null).success) throw new Error('occt-import-js fails');
+      if (!reader.ReadStepFile(bytes, null).success) throw new Error('occt-import-js fails');
       found.push(performance.now() - start);
     }
     return found;
-  }, 4);
+  }, 3);
   report(`occt-import-js reads and meshes ${basename(file)}, without a picture`, times);
   other.close();
   return Math.min(...times);
 }
 
-const cold = await drops(150), warm = await drops(4000);
+const cold = await drops(300), warm = await drops(3000);
 await orbit();
 if (occt) {
-  const theirs = await occtTimes();
-  console.log(`occt-import-js takes ${(theirs / cold).toFixed(1)} times as long as a picture at once, ${(theirs / warm).toFixed(1)} times later`);
+  const theirs = await occtTime();
+  console.log(`occt-import-js takes ${(theirs / cold).toFixed(1)} and ${(theirs / warm).toFixed(1)} times as long`);
 }
 await browser.close();
-server.close();
+process.exit(0);

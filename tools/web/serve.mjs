@@ -7,8 +7,9 @@ import { fileURLToPath } from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const types = {
-  '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.mjs': 'text/javascript; charset=utf-8',
-  '.css': 'text/css; charset=utf-8', '.json': 'application/json', '.svg': 'image/svg+xml', '.wasm': 'application/wasm',
+  '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8',
+  '.mjs': 'text/javascript; charset=utf-8', '.css': 'text/css; charset=utf-8',
+  '.json': 'application/json', '.svg': 'image/svg+xml', '.wasm': 'application/wasm',
 };
 const headers = {
   // With both of these a page has SharedArrayBuffer.
@@ -38,8 +39,9 @@ function fileOf(folders, path) {
 /** Sends a page that may use this server alone: its scripts are marked by a number that nobody else knows. */
 function sendPage(response, file, type) {
   const nonce = randomBytes(16).toString('hex');
-  const policy = `default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-${nonce}'; worker-src 'self'; connect-src 'self'; ` +
-    "style-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+  const policy = `default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-${nonce}'; worker-src 'self'; ` +
+    "connect-src 'self'; style-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; " +
+    "frame-ancestors 'none'";
   response.writeHead(200, { ...headers, 'Content-Type': type, 'Content-Security-Policy': policy });
   response.end(readFileSync(file, 'utf8').replaceAll('<script', `<script nonce="${nonce}"`));
 }
@@ -47,12 +49,16 @@ function sendPage(response, file, type) {
 /** The address of the page that shows /model/NAME: the page decodes its query once, and the server the path in it. */
 const addressOf = (name) => `?model=${encodeURIComponent(`/model/${encodeURIComponent(name)}`)}`;
 
+/** The file of /model/NAME, or null. */
+const modelOf = (model, path) => (model && path === `/model/${basename(model)}` ? model : null);
+
 /** Makes the server. `model`: a file that is served as /model/NAME. */
 export function serverOf({ folders = foldersOf(), model = null } = {}) {
   return createServer((request, response) => {
     const answer = (status, text) => response.writeHead(status, { ...headers, 'Content-Type': 'text/plain' }).end(text);
     // Another site whose name leads to this machine is not served.
-    if (!/^(localhost|127\.0\.0\.1|\[::1\])(:\d+)?$/.test(request.headers.host ?? '')) return answer(403, 'another host\n');
+    const isOwn = /^(localhost|127\.0\.0\.1|\[::1\])(:\d+)?$/.test(request.headers.host ?? '');
+    if (!isOwn) return answer(403, 'another host\n');
     if (request.method !== 'GET' && request.method !== 'HEAD') return answer(405, 'only GET and HEAD\n');
     let path;
     try {
@@ -60,7 +66,8 @@ export function serverOf({ folders = foldersOf(), model = null } = {}) {
     } catch {
       return answer(400, 'no address\n');
     }
-    const file = path.startsWith('/model/') ? (model && path === `/model/${basename(model)}` ? model : null) : fileOf(folders, path);
+    const isModel = path.startsWith('/model/');
+    const file = isModel ? modelOf(model, path) : fileOf(folders, path);
     if (!file) return answer(404, 'no such file\n');
     const size = statSync(file).size, type = types[extname(file).toLowerCase()] ?? 'application/octet-stream';
     if (type.startsWith('text/html')) return sendPage(response, file, type);
@@ -79,7 +86,8 @@ function main(words) {
     else model = resolve(words[k]);
   }
   if (!(Number.isInteger(port) && port >= 0 && port < 65536)) return console.error(use), 2;
-  if (model && !(existsSync(model) && statSync(model).isFile())) return console.error(`${model}: there is no such file`), 1;
+  if (model && !(existsSync(model) && statSync(model).isFile()))
+    return console.error(`${model}: there is no such file`), 1;
   const folders = foldersOf(), lacking = folders.find(([, folder]) => !existsSync(folder));
   if (lacking) return console.error(`${lacking[1]} is not there: run npm ci, and build the target tessera_npm`), 1;
   const server = serverOf({ folders, model });
@@ -93,4 +101,5 @@ function main(words) {
   });
   return 0;
 }
-if (process.argv[1] && realpathSync(process.argv[1]) === fileURLToPath(import.meta.url)) process.exitCode = main(process.argv.slice(2));
+if (process.argv[1] && realpathSync(process.argv[1]) === fileURLToPath(import.meta.url))
+  process.exitCode = main(process.argv.slice(2));

@@ -25,7 +25,7 @@ export interface AnyMesh {
 export interface AnyPatches {
   readonly surfaces: Now<Uint32Array>; readonly origin: Now<number[]>;
   plan(options: object): Now<object>;
-  evaluate(surfaces: Uint32Array, u: Float64Array, v: Float64Array, wanted: string[]): Now<Record<string, Float64Array>>;
+  evaluate(surfaces: Uint32Array, u: Float64Array, v: Float64Array, names: any[]): Now<Record<string, Float64Array>>;
 }
 
 /** The view of a camera in the coordinates of `object`. Errors: a camera off its axis, a transform of uneven scale. */
@@ -35,11 +35,11 @@ export type CurvatureKind = 'mean' | 'gaussian' | 'maximum';
 export const curvatureKinds: Record<CurvatureKind, { quantities: string[]; isSigned: boolean }>;
 /** Colours in CSS, from -range (from 0 where the kind has no sign) to range. */
 export function curvatureStops(kind: CurvatureKind): string[];
-/** A curvature for each vertex, of the surfaces themselves; NaN where it is undefined. `domains`: four for each surface. */
+/** A curvature for each vertex, of the surfaces themselves; NaN where it is undefined. `domains`: four a surface. */
 export function curvaturesOf(patches: AnyPatches, kind: CurvatureKind,
   at: { parameters: Float32Array; surfaces: Uint32Array; domains: Float64Array }): Promise<Float32Array>;
-/** The range that 95 of 100 values stay within; 1 where all are 0. */
-export function curvatureRange(values: Float32Array): number;
+/** The range that holds the values of 95 of 100 parts of the curved area; 1 where nothing is curved. */
+export function curvatureRange(values: Float32Array, mesh: Pick<Arrays, 'positions' | 'triangles'>): number;
 /** Writes four numbers, 0 to 65535, for each value. */
 export function colourByCurvature(colours: Uint16Array, values: Float32Array, kind: CurvatureKind, range: number): void;
 

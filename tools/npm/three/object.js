@@ -1,5 +1,7 @@
 // A model in a scene of three.js, whose triangles follow the camera.
-import { BufferAttribute, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial } from 'three';
+import {
+  BufferAttribute, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial,
+} from 'three';
 import { colourByCurvature, curvatureKinds, curvatureRange, curvaturesOf } from './curvature.js';
 import { arraysOf, colourBySurface, edgeGeometryOf, geometryOf, paletteOf, surfacesOf } from './geometry.js';
 import { viewOf } from './view.js';
@@ -22,7 +24,8 @@ export class ModelObject extends Group {
   /** Takes a model and its patches, from the package or from its worker. */
   static async make(model, patches, options = {}) {
     for (const name of Object.keys(options))
-      if (!known.includes(name)) throw new Error(`ModelObject: there is no option ${name}; there are ${known.join(', ')}`);
+      if (!known.includes(name))
+        throw new Error(`ModelObject: there is no option ${name}; there are ${known.join(', ')}`);
     const [faces, patchSurfaces, origin] = await Promise.all([model.surfaces(), patches.surfaces, patches.origin]);
     return new ModelObject(patches, { faces, patchSurfaces, origin, ...options });
   }
@@ -39,7 +42,8 @@ export class ModelObject extends Group {
   constructor(patches, { faces, patchSurfaces, origin, pixels = 0.5, colours = 'surface', edges = true,
     plain = '#b8c0c8', highlight = '#ff9f2e', plan = {} }) {
     super();
-    Object.assign(this, { patches, faces, pixels, colours, shown: null, curvatureRanges: {}, planOptions: { edges, ...plan } });
+    Object.assign(this, { patches, faces, pixels, colours, shown: null, curvatureRanges: {} });
+    this.planOptions = { edges, ...plan };
     this.#patchSurfaces = patchSurfaces.slice();
     this.#domains = new Float64Array(faces.flatMap((face) => Array.from(face.domain)));
     this.#palette = paletteOf(faces, plain);
@@ -114,17 +118,21 @@ export class ModelObject extends Group {
     this.shown = { ...numbers, milliseconds, view, key };
   }
 
-  async #curvatures({ parameters }, { ofVertices }) {
+  async #curvatures(arrays, { ofVertices }) {
     const kind = this.colours;
     if (!curvatureKinds[kind]) return null;
-    const values = await curvaturesOf(this.patches, kind, { parameters, surfaces: ofVertices, domains: this.#domains });
-    this.curvatureRanges[kind] ??= curvatureRange(values);
+    const values = await curvaturesOf(this.patches, kind,
+      { parameters: arrays.parameters, surfaces: ofVertices, domains: this.#domains });
+    this.curvatureRanges[kind] ??= curvatureRange(values, arrays);
     return { kind, values };
   }
   #take(curvatures) {
     const geometry = geometryOf(this.#arrays, { ...this.#surfaces, palette: this.#palette, hidden: this.hidden });
     const lines = edgeGeometryOf(geometry, this.#arrays, { ...this.#surfaces, hidden: this.hidden });
-    if (curvatures) geometry.setAttribute('curvature', Object.assign(new BufferAttribute(curvatures.values, 1), { kind: curvatures.kind }));
+    if (curvatures) {
+      const { kind, values } = curvatures;
+      geometry.setAttribute('curvature', Object.assign(new BufferAttribute(values, 1), { kind }));
+    }
     for (const [object, its] of [[this.mesh, geometry], [this.lines, lines]]) {
       object.geometry.dispose();
       object.geometry = its;
@@ -204,5 +212,7 @@ export class ModelObject extends Group {
   }
 }
 
-const planNumbers = ['triangles', 'vertices', 'pixels', 'bound', 'seenBound', 'gap', 'openEdges', 'crossedPatches', 'isCertified'];
+const planNumbers = [
+  'triangles', 'vertices', 'pixels', 'bound', 'seenBound', 'gap', 'openEdges', 'crossedPatches', 'isCertified',
+];
 function numbersOf(plan) { return Object.fromEntries(planNumbers.map((name) => [name, plan[name]])); }

@@ -14,8 +14,8 @@ function scaleOf(matrix) {
 }
 
 /**
- * Returns the view of a camera whose picture has `width` x `height` pixels, in the coordinates of `object`. Where pixels
- * of the picture are no squares, the view has as many as its finer direction needs, so that a bound in pixels holds.
+ * Returns the view of a camera whose picture has `width` x `height` pixels, in the coordinates of `object`. Where the
+ * picture's pixels are no squares, the view has as many as its finer direction needs, so that a bound in pixels holds.
  * Errors: a perspective camera off its axis (setViewOffset), a transform that scales unevenly.
  */
 export function viewOf(camera, width, height, object = null) {

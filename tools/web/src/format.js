@@ -10,7 +10,8 @@ export function short(number, digits = 4) {
   if (!Number.isFinite(number)) return number > 0 ? '∞' : number < 0 ? '−∞' : '–';
   if (number === 0) return '0';
   const size = Math.abs(number);
-  const text = size >= 1e6 || size < 1e-4 ? number.toExponential(digits - 1) : Number(number.toPrecision(digits)).toString();
+  const text = size >= 1e6 || size < 1e-4 ? number.toExponential(digits - 1)
+    : Number(number.toPrecision(digits)).toString();
   return text.replace(/e\+?(-?\d+)/, (_, power) => ` · 10${superscript(power)}`).replace(/^-/, '−');
 }
 const superscript = (power) => [...power].map((each) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[each] ?? '⁻').join('');

@@ -14,7 +14,8 @@ export function listenForKeys(canvas, viewer, on) {
     h: (event) => (event.shiftKey ? on.showAll() : on.hide()),
   };
   for (const [key, axis] of Object.entries(axes))
-    actions[key] = (event) => viewer.look(axis.map((value) => (value || 1e-4 * (key === 'z')) * (event.shiftKey ? -1 : 1)));
+    actions[key] = ({ shiftKey }) =>
+      viewer.look(axis.map((value) => (value || 1e-4 * (key === 'z')) * (shiftKey ? -1 : 1)));
   modes.forEach((mode, k) => { actions[k + 1] = () => on.mode(mode); });
   canvas.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !viewer.object) return;
@@ -37,7 +38,8 @@ export function listenForPicks(canvas, pick) {
   const end = (event) => {
     fingers = Math.max(0, fingers - 1);
     const reach = event.pointerType === 'touch' ? 10 : 4;
-    if (event.type === 'pointerup' && pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) < reach) {
+    const moved = pressed ? Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) : Infinity;
+    if (event.type === 'pointerup' && moved < reach) {
       const box = canvas.getBoundingClientRect();
       pick((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
     }

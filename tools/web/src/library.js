@@ -39,7 +39,8 @@ export async function prepare() {
   tessera.terminate();
 }
 function warmView({ low, high }, k) {
-  const target = low.map((value, c) => (value + high[c]) / 2), size = Math.hypot(...low.map((value, c) => high[c] - value));
+  const target = low.map((value, c) => (value + high[c]) / 2);
+  const size = Math.hypot(...low.map((value, c) => high[c] - value));
   return { eye: target.map((value, c) => value + size * [1, -1, 0.2 * k][c]), target };
 }
 
@@ -85,10 +86,12 @@ export class Document {
     this.#tessera = tessera;
     const model = (this.#model = await tessera.open(source.name, bytes,
       { progress: (share) => progress('Reading', 0.7 * share) }));
-    const patches = (this.#patches = await model.patches({ progress: (share) => progress('Preparing', 0.7 + 0.3 * share) }));
+    const patches = (this.#patches = await model.patches(
+      { progress: (share) => progress('Preparing', 0.7 + 0.3 * share) }));
     const object = ModelObject.make(model, patches);
-    [this.unit, this.warnings, this.instances, this.shapes, this.box, this.patchCount, this.cutCount] = await Promise.all(
-      [model.unit, model.warnings, model.instances(), model.shapes(), patches.box, patches.count, patches.cutCount]);
+    [this.warnings, this.instances, this.shapes] =
+      await Promise.all([model.warnings, model.instances(), model.shapes()]);
+    Object.assign(this, { unit: model.unit, box: patches.box, patchCount: patches.count, cutCount: patches.cutCount });
     this.object = await object;
     this.faces = this.object.faces;
   }
@@ -108,7 +111,8 @@ export class Document {
     return null;
   }
   async #describe({ surface: [surface], uv: [u, v], position, normal }) {
-    const found = await this.#patches.evaluate(surface, u, v, ['firstCurvature', 'secondCurvature', 'gaussian', 'mean']);
+    const names = ['firstCurvature', 'secondCurvature', 'gaussian', 'mean'];
+    const found = await this.#patches.evaluate(surface, u, v, names);
     const curvatures = Object.fromEntries(Object.entries(found).map(([name, [value]]) => [name, value]));
     return { surface, u, v, position: Array.from(position), normal: Array.from(normal), ...curvatures };
   }

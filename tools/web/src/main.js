@@ -1,6 +1,6 @@
 // The page: what is open, and what buttons, keys and files do.
 import { curvatureKinds, curvatureStops } from 'tessera/three';
-import { count, counted, length, round, short, withUnit } from './format.js';
+import { count, counted, element, length, round, short, withUnit } from './format.js';
 import { listenForKeys, listenForPicks } from './keys.js';
 import { Document, prepare } from './library.js';
 import { Numbers, showFace } from './panels.js';
@@ -32,7 +32,8 @@ async function show(source) {
   busy(source.name, 'Reading', null);
   performance.mark('open');
   try {
-    const document = await Document.open(source, { signal: mine.signal, progress: (words, share) => mine === reading && busy(source.name, words, share) });
+    const progress = (words, share) => { if (mine === reading) busy(source.name, words, share); };
+    const document = await Document.open(source, { signal: mine.signal, progress });
     if (mine !== reading) return document.close();
     await take(document);
   } catch (error) {
@@ -182,7 +183,7 @@ function showLegend() {
   const unit = withUnit('', open.unit && `1/${open.unit}`, 1).trim() + (kind === 'gaussian' && open.unit ? '²' : '');
   $('ramp').style.background = `linear-gradient(to right, ${curvatureStops(kind).join(', ')})`;
   const low = curvatureKinds[kind].isSigned ? short(-range, 2) : '0';
-  $('scale').replaceChildren(...[low, unit, short(range, 2)].map((text) => Object.assign(document.createElement('span'), { textContent: text })));
+  $('scale').replaceChildren(...[low, unit, short(range, 2)].map((text) => element('span', {}, text)));
 }
 
 // Measures and files.
@@ -191,7 +192,9 @@ async function measure() {
   const progress = (share) => its.showMeasuring(share, () => mine.abort());
   progress(0);
   try {
-    const found = await asked.measure({ signal: mine.signal, progress: (share) => mine.signal.aborted || progress(share) });
+    const found = await asked.measure({
+      signal: mine.signal, progress: (share) => { if (!mine.signal.aborted) progress(share); },
+    });
     its.showMeasures(found);
     if (asked === open) say(`Area ${short(found.area)}.`);
   } catch (error) {
@@ -224,7 +227,10 @@ function takeColours() {
   viewer.setColours({ ground: value('--stage'), line: value('--line'), wire: value('--wire') });
 }
 
-listen({ stage: $('stage'), chooser: $('chooser'), buttons: [$('open'), $('choose')], choice: $('examples'), tries: $('tries'), open: show, say });
+listen({
+  stage: $('stage'), chooser: $('chooser'), buttons: [$('open'), $('choose')], choice: $('examples'), tries: $('tries'),
+  open: show, say,
+});
 listenForKeys(canvas, viewer, { pick, mode: setMode, clear, hide: hidePart, showAll });
 listenForPicks(canvas, pick);
 $('cancel').addEventListener('click', () => reading?.abort());

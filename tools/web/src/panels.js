@@ -5,7 +5,9 @@ import { plainName } from './parts.js';
 const quiet = (text) => element('p', { className: 'quiet' }, text);
 const point = (values, digits) => values.map((value) => short(value, digits)).join(', ');
 /** A colour of STEP in CSS. */
-export function cssColour(colour) { return `rgb(${colour.slice(0, 3).map((value) => Math.round(255 * value)).join(' ')})`; }
+export function cssColour(colour) {
+  return `rgb(${colour.slice(0, 3).map((value) => Math.round(255 * value)).join(' ')})`;
+}
 
 function swatch(colour) {
   if (!colour) return 'none';
@@ -94,7 +96,8 @@ export class Numbers {
 
 function warningsOf(warnings) {
   const shown = warnings.slice(0, 100).map((each) => element('li', {}, each));
-  if (warnings.length > shown.length) shown.push(element('li', {}, `and ${count(warnings.length - shown.length)} more`));
+  const left = warnings.length - shown.length;
+  if (left > 0) shown.push(element('li', {}, `and ${count(left)} more`));
   return element('details', { className: 'warnings' },
     element('summary', {}, counted(warnings.length, 'warning')), element('ul', {}, ...shown));
 }

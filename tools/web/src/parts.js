@@ -19,7 +19,8 @@ function branchesOf({ instances, shapes, faces }) {
     if (its.length === 1) return [instance(its[0], plainName(shapes[k].name) ?? undefined)];
     if (its.length === 0) return [];
     const surfaces = its.flatMap((each) => surfacesOf[each]);
-    return [{ name: plainName(shapes[k].name) ?? `Shape ${k + 1}`, note: `× ${its.length}`, surfaces, children: () => its.map((each) => instance(each)) }];
+    const name = plainName(shapes[k].name) ?? `Shape ${k + 1}`;
+    return [{ name, note: `× ${its.length}`, surfaces, children: () => its.map((each) => instance(each)) }];
   });
   return [...branches, ...free.map(face)];
 }
@@ -71,7 +72,8 @@ export class Parts {
     const button = element('button', { type: 'button', className: 'name', ariaPressed: 'false' },
       element('span', { className: 'title' }, name), element('span', { className: 'note' }, note));
     button.addEventListener('click', () => this.on.select(surfaces, name));
-    const zoom = element('button', { type: 'button', className: 'zoom', ariaLabel: `Zoom to ${name}`, title: 'Zoom to it' });
+    const zoom = element('button',
+      { type: 'button', className: 'zoom', ariaLabel: `Zoom to ${name}`, title: 'Zoom to it' });
     zoom.addEventListener('click', () => this.on.zoom(surfaces, name));
     const item = element('li', {}), row = element('div', { className: 'row' });
     row.append(children ? this.#twist(item, branch, id) : element('span', { className: 'twist' }), box, button, zoom);
@@ -81,7 +83,8 @@ export class Parts {
     return item;
   }
   #twist(item, { name, children }, id) {
-    const twist = element('button', { type: 'button', className: 'twist', ariaLabel: `Parts of ${name}`, ariaExpanded: 'false' });
+    const twist = element('button',
+      { type: 'button', className: 'twist', ariaLabel: `Parts of ${name}`, ariaExpanded: 'false' });
     let list = null;
     twist.addEventListener('click', () => {
       if (!list) {
@@ -108,7 +111,8 @@ export class Parts {
   /** Marks the rows of exactly these surfaces. */
   mark(surfaces) {
     for (const { row, button, surfaces: its } of this.#rows) {
-      const isMarked = its.length === surfaces.length && its.length > 0 && its[0] === surfaces[0] && its.at(-1) === surfaces.at(-1);
+      const isMarked = its.length === surfaces.length && its.length > 0 && its[0] === surfaces[0] &&
+        its.at(-1) === surfaces.at(-1);
       row.classList.toggle('marked', isMarked);
       button.ariaPressed = String(isMarked);
     }

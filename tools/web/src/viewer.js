@@ -1,7 +1,7 @@
 // The picture: a scene of three.js, a camera that orbits, and pictures that are drawn when their triangles are proven.
 import {
-  BufferAttribute, BufferGeometry, CanvasTexture, DirectionalLight, DoubleSide, HemisphereLight, Mesh, MeshBasicMaterial,
-  PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, CanvasTexture, DirectionalLight, DoubleSide, HemisphereLight, Mesh,
+  MeshBasicMaterial, PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { ModelObject } from 'tessera/three';
@@ -11,14 +11,16 @@ const isCalm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 /** A round dot with a white rim, over everything. */
 function dotMaterial() {
-  const picture = Object.assign(document.createElement('canvas'), { width: 32, height: 32 }), pen = picture.getContext('2d');
+  const picture = Object.assign(document.createElement('canvas'), { width: 32, height: 32 });
+  const pen = picture.getContext('2d');
   for (const [radius, colour] of [[15, '#ffffff'], [10, '#d9480f']]) {
     pen.fillStyle = colour;
     pen.beginPath();
     pen.arc(16, 16, radius, 0, 2 * Math.PI);
     pen.fill();
   }
-  return new PointsMaterial({ size: 13, sizeAttenuation: false, depthTest: false, map: new CanvasTexture(picture), transparent: true });
+  const map = new CanvasTexture(picture);
+  return new PointsMaterial({ size: 13, sizeAttenuation: false, depthTest: false, map, transparent: true });
 }
 
 export class Viewer {
@@ -29,7 +31,8 @@ export class Viewer {
   #controls;
   #eye = new PerspectiveCamera();  // the camera of the last picture, with a lamp
   #wire = new Mesh(undefined, new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.55 }));
-  #flat = new MeshBasicMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  #flat = new MeshBasicMaterial(
+    { side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
   #dot = new Points(new BufferGeometry(), dotMaterial());
   #object = null;
   #shaded = null;  // the object's own material
@@ -63,7 +66,8 @@ export class Viewer {
     }
     this.#dot.renderOrder = 2;
     this.#controls = new OrbitControls(this.#camera, canvas);
-    Object.assign(this.#controls, { enableDamping: !isCalm(), dampingFactor: 0.2, zoomToCursor: true, rotateSpeed: 0.9 });
+    Object.assign(this.#controls,
+      { enableDamping: !isCalm(), dampingFactor: 0.2, zoomToCursor: true, rotateSpeed: 0.9 });
     this.#controls.addEventListener('change', () => this.redraw());
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     this.#resize();
@@ -73,11 +77,13 @@ export class Viewer {
   async #warm() {
     await new Promise((resolve) => setTimeout(resolve, 50));
     const geometry = new BufferGeometry();
-    for (const [name, size] of [['position', 3], ['normal', 3], ['color', 4], ['uv', 2]])
-      geometry.setAttribute(name, new BufferAttribute(name === 'color' ? new Uint16Array(12) : new Float32Array(9), size, true));
+    for (const [name, size] of [['position', 3], ['normal', 3], ['uv', 2]])
+      geometry.setAttribute(name, new BufferAttribute(new Float32Array(9), size));
+    geometry.setAttribute('color', new BufferAttribute(new Uint16Array(12), 4, true));
     const places = new BufferGeometry().setAttribute('position', geometry.getAttribute('position'));
     const still = new Scene(), { mesh, lines } = ModelObject.drawables(geometry, places);
-    still.add(mesh, lines, new Mesh(geometry, this.#wire.material), new Mesh(geometry, this.#flat), new Points(places, this.#dot.material));
+    still.add(mesh, lines, new Mesh(geometry, this.#wire.material), new Mesh(geometry, this.#flat));
+    still.add(new Points(places, this.#dot.material));
     // Programs depend on the lights, which are those of the scene.
     const renderer = this.#renderer, isParallel = renderer.extensions.has('KHR_parallel_shader_compile');
     if (isParallel) await renderer.compileAsync(still, this.#eye, this.#scene);
@@ -122,10 +128,12 @@ export class Viewer {
 
   /** Turns to a direction from the centre, at the distance that shows all; `box`: of what is fitted. */
   look(direction, isSmooth = true, box = null) {
-    const { low, high } = box ?? this.#box, centre = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
+    const { low, high } = box ?? this.#box;
+    const centre = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
     const back = direction ? new Vector3(...direction) : this.#camera.position.clone().sub(this.#controls.target);
     back.normalize();
-    const right = new Vector3().crossVectors(this.#camera.up, back).normalize(), up = new Vector3().crossVectors(back, right);
+    const right = new Vector3().crossVectors(this.#camera.up, back).normalize();
+    const up = new Vector3().crossVectors(back, right);
     const half = Math.tan(fieldOfView * Math.PI / 360), corner = new Vector3();
     let distance = this.#radius * 2e-3;
     for (let k = 0; k < 8; ++k) {
