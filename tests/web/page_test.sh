@@ -25,4 +25,5 @@ if [[ -z $page && -e $build/tessera.wasm ]]; then
 fi
 page=${page:-$root/build/wasm/web}
 [[ -e $page/tessera/tessera.wasm ]] || skip "no page: cmake --preset wasm; cmake --build build/wasm --target tessera_web"
+node "$source/three.mjs" "$page"
 exec node "$source/page.mjs" "$browser" "$page" ${native:+"$native"}

@@ -19,21 +19,42 @@ export function curvatureStops(kind) { return curvatureKinds[kind].isSigned ? si
 /**
  * Returns a curvature for each vertex, by the surfaces themselves; NaN where it is undefined. `parameters`: two numbers
  * each; `surfaces`: one each; `domains`: four for each surface, which numbers in float may leave by their rounding.
+ * At a pole the curvature is that of a point near it.
  */
 export async function curvaturesOf(patches, kind, { parameters, surfaces, domains }) {
   const rule = curvatureKinds[kind];
   if (!rule) throw new Error(`${kind} is no curvature; there are ${Object.keys(curvatureKinds).join(', ')}`);
-  const count = surfaces.length, u = new Float64Array(count), v = new Float64Array(count);
-  for (let k = 0; k < count; ++k) {
-    const at = 4 * surfaces[k];
-    u[k] = Math.min(Math.max(parameters[2 * k], domains[at]), domains[at + 1]);
-    v[k] = Math.min(Math.max(parameters[2 * k + 1], domains[at + 2]), domains[at + 3]);
-  }
-  if (count === 0) return new Float32Array(0);
-  const found = await patches.evaluate(surfaces, u, v, rule.quantities);
-  const [first, second] = rule.quantities.map((name) => found[name]), values = new Float32Array(count);
-  for (let k = 0; k < count; ++k) values[k] = rule.of(first[k], second?.[k]);
+  const values = new Float32Array(surfaces.length), all = Uint32Array.from(surfaces.keys());
+  const evaluate = async (vertices, inwards) => {
+    const at = samplesOf(vertices, { parameters, surfaces, domains }, inwards);
+    const found = await patches.evaluate(at.surfaces, at.u, at.v, [...rule.quantities, 'firstForm']);
+    const [first, second] = rule.quantities.map((name) => found[name]), { firstForm } = found;
+    return vertices.filter((vertex, k) => {
+      const [E, F, G] = firstForm.subarray(3 * k, 3 * k + 3);
+      const isUndefined = !(E * G - F * F > 1e-18 * (E + G) ** 2);
+      values[vertex] = isUndefined ? NaN : rule.of(first[k], second?.[k]);
+      return isUndefined;
+    });
+  };
+  const poles = all.length > 0 ? await evaluate(all, 0) : all;
+  if (poles.length > 0) await evaluate(poles, 1e-3);
   return values;
+}
+/** The parameters of vertices, within the domains, and moved by a share of these towards their middle. */
+function samplesOf(vertices, { parameters, surfaces, domains }, inwards) {
+  const count = vertices.length;
+  const at = { surfaces: new Uint32Array(count), u: new Float64Array(count), v: new Float64Array(count) };
+  const moved = (value, low, high) => {
+    const inside = Math.min(Math.max(value, low), high);
+    return inside + inwards * ((low + high) / 2 - inside);
+  };
+  for (let k = 0; k < count; ++k) {
+    const vertex = vertices[k], surface = surfaces[vertex], domain = 4 * surface;
+    at.surfaces[k] = surface;
+    at.u[k] = moved(parameters[2 * vertex], domains[domain], domains[domain + 1]);
+    at.v[k] = moved(parameters[2 * vertex + 1], domains[domain + 2], domains[domain + 3]);
+  }
+  return at;
 }
 
 /**

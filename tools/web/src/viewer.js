@@ -1,10 +1,10 @@
 // The picture: a scene of three.js, a camera that orbits, and pictures that are drawn when their triangles are proven.
 import {
-  BufferAttribute, BufferGeometry, CanvasTexture, DirectionalLight, DoubleSide, HemisphereLight, Mesh,
-  MeshBasicMaterial, PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Mesh, MeshBasicMaterial, PerspectiveCamera, Points,
+  PointsMaterial, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { ModelObject } from 'tessera/three';
+import { lights, warm } from './warm.js';
 
 const fieldOfView = 30, patience = 80;  // degrees; milliseconds that a picture waits for its proof
 const isCalm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -45,7 +45,6 @@ export class Viewer {
   #flight = null;
   #failed = null;
   #kept = null;  // what keeps programs alive
-  #ready;
 
   /** `onPicture({ isProven })` is called for each picture, `onError(error)` if a plan fails. */
   constructor(canvas, { onPicture, onError }) {
@@ -54,9 +53,7 @@ export class Viewer {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.#renderer.setClearAlpha(0);
     this.#camera.up.set(0, 0, 1);
-    const lamp = new DirectionalLight(0xffffff, 1.7), sky = new HemisphereLight(0xffffff, 0x8f979f, 1.9);
-    lamp.position.set(-0.5, 0.7, 1);
-    sky.position.set(0, 0, 1);
+    const { lamp, sky } = lights();
     this.#eye.add(lamp, lamp.target);
     this.#scene.add(this.#eye, sky, this.#wire, this.#dot);
     this.#dot.geometry.setAttribute('position', new BufferAttribute(new Float32Array(3), 3));
@@ -71,26 +68,9 @@ export class Viewer {
     this.#controls.addEventListener('change', () => this.redraw());
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     this.#resize();
-    this.#ready = this.#warm();
+    const materials = { surfaces: [this.#wire.material, this.#flat], points: this.#dot.material };
+    this.#kept = warm(this.#renderer, new PerspectiveCamera(), materials, () => this.#object === null);
   }
-  // The graphics card's programs are compiled before there is a model, while the page goes on, and kept.
-  async #warm() {
-    await new Promise((resolve) => setTimeout(resolve, 50));
-    const geometry = new BufferGeometry();
-    for (const [name, size] of [['position', 3], ['normal', 3], ['uv', 2]])
-      geometry.setAttribute(name, new BufferAttribute(new Float32Array(9), size));
-    geometry.setAttribute('color', new BufferAttribute(new Uint16Array(12), 4, true));
-    const places = new BufferGeometry().setAttribute('position', geometry.getAttribute('position'));
-    const still = new Scene(), { mesh, lines } = ModelObject.drawables(geometry, places);
-    still.add(mesh, lines, new Mesh(geometry, this.#wire.material), new Mesh(geometry, this.#flat));
-    still.add(new Points(places, this.#dot.material));
-    // Programs depend on the lights, which are those of the scene.
-    const renderer = this.#renderer, isParallel = renderer.extensions.has('KHR_parallel_shader_compile');
-    if (isParallel) await renderer.compileAsync(still, this.#eye, this.#scene);
-    else renderer.compile(still, this.#eye, this.#scene);
-    this.#kept = still;
-  }
-
   get object() { return this.#object; }
   get mode() { return this.#mode; }
   get size() {
@@ -113,7 +93,7 @@ export class Viewer {
     this.#clip();
     const camera = this.#camera.clone();
     const { width, height } = this.size;
-    await Promise.all([object.update(camera, width, height), this.#ready]);
+    await object.update(camera, width, height);
     if (this.#object === object) this.#draw(camera, true);
   }
   clear() {
