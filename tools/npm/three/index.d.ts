@@ -35,7 +35,7 @@ export type CurvatureKind = 'mean' | 'gaussian' | 'maximum';
 export const curvatureKinds: Record<CurvatureKind, { quantities: string[]; isSigned: boolean }>;
 /** Colours in CSS, from -range (from 0 where the kind has no sign) to range. */
 export function curvatureStops(kind: CurvatureKind): string[];
-/** A curvature for each vertex, of the surfaces themselves, beside poles; NaN where it is undefined. `domains`: four a surface. */
+/** A curvature for each vertex, of the surfaces, or beside poles; NaN where there is none. `domains`: four a surface. */
 export function curvaturesOf(patches: AnyPatches, kind: CurvatureKind,
   at: { parameters: Float32Array; surfaces: Uint32Array; domains: Float64Array }): Promise<Float32Array>;
 /** The range that holds the values of 95 of 100 parts of the curved area; 1 where nothing is curved. */
