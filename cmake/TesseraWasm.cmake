@@ -5,7 +5,8 @@
 #   compiler's        libclang-rt-19-dev-wasm32 19.1
 #   fast_float        libfast-float-dev 3.9    from_chars() of doubles, which that C++ library lacks (headers only)
 #   muParser          the source package muparser 2.3, because Debian has no library of it for WebAssembly
-#   Node              nodejs 18 or later       the tests
+#   Node              nodejs 18 or later       the package for npm, the tests
+#   TypeScript        node-typescript 4.8      the tests of the package's types
 
 set(TESSERA_MUPARSER_SOURCE ${PROJECT_SOURCE_DIR}/build/sources/muparser CACHE PATH
   "The source of muParser, where tools/setup.sh --for wasm unpacks it")

@@ -42,7 +42,7 @@ test_packages=("${python_packages[@]}" "${mpi_packages[@]}" abigail-tools binuti
   python3 python3-pytest python3-yaml universal-ctags valgrind)
 neon_packages=(g++-aarch64-linux-gnu qemu-user)
 wasm_packages=(clang-19 lld-19 libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc
-  libfast-float-dev nodejs dpkg-dev)
+  libfast-float-dev nodejs node-typescript dpkg-dev)
 fuzz_packages=(clang-19 libclang-rt-19-dev)
 peer_packages=(libocct-modeling-data-dev libocct-modeling-algorithms-dev libocct-data-exchange-dev libosd-dev
   libsisl-dev povray python3)

@@ -62,6 +62,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 #include "tessera/model.h"
@@ -97,6 +98,8 @@ struct CadOptions {
   std::filesystem::path reader = {};
   const std::atomic<bool>* cancel = nullptr;     ///< polled; the call then ends the program and returns cancelled
   StepReader step_reader = StepReader::tessera;  ///< who reads STEP; no matter for other formats
+  /// Called as Execution::progress, while the library reads a STEP file itself; never for other files.
+  std::function<void(double)> progress = {};
 };
 
 /// Reads a CAD file.

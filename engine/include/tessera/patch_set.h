@@ -8,6 +8,7 @@
 
 #include "tessera/bezier_patch.h"
 #include "tessera/convert.h"
+#include "tessera/execution.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
@@ -56,6 +57,7 @@ struct PatchSetOptions {
   /// Sets that are made of a model: whether trimming loops count. Patches that a face's loops cut away are then left
   /// out, and meshes follow the loops through those that they cut. If false, every patch is whole.
   bool trims = true;
+  Execution execution = {};  ///< cancel and progress of the call that makes the set
 };
 
 /// Owns patches and their SoA blocks.
@@ -81,7 +83,7 @@ class PatchSet {
   /// - count_mismatch (sources that are neither none nor one per patch)
   /// - invalid_argument (a box that does not contain all control points)
   /// - non_finite (the origin or the box; index = the patch: numbers out of that range)
-  /// - out_of_memory
+  /// - cancelled, out_of_memory
   static Result<PatchSet> make(std::span<const BezierPatch> patches, const PatchSetOptions& options = {});
 
   PatchSet(PatchSet&&) noexcept;

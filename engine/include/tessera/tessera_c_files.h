@@ -31,7 +31,8 @@ typedef struct tsr_read_options {
 } tsr_read_options;
 void tsr_read_defaults(tsr_read_options* options);
 
-/* Reads a file as tsr_model_read() does, with options. tsr_run.cancel ends the program tessera-cad-reader. Errors: as
+/* Reads a file as tsr_model_read() does, with options. tsr_run.cancel ends the reading of a STEP file, and the
+ * program tessera-cad-reader; tsr_run.progress tells of STEP files that the library reads. Errors: as
  * tsr_model_read(), TSR_CANCELLED. */
 tsr_status tsr_model_read_file(tsr_model** model, const char* path, const tsr_read_options* options,
                                const tsr_run* run);

@@ -178,7 +178,7 @@ Box3 PatchSet::Impl::box() const {
   return box;
 }
 
-Status PatchSet::Impl::pack_all() {
+Status PatchSet::Impl::pack_all(const Execution& execution) {
   constexpr std::size_t blocks_in_piece = 32;
   const kernel::KernelTable& kernels = kernel::default_kernels();
   std::atomic<std::size_t> failed{lane_patches.size()};  // the first lane that doesn't fit
@@ -191,7 +191,7 @@ Status PatchSet::Impl::pack_all() {
       return;
     }
   };
-  Status status = parallel_for(lane_counts.size(), blocks_in_piece, {}, pack_blocks);
+  Status status = parallel_for(lane_counts.size(), blocks_in_piece, execution, pack_blocks);
   return status.ok() && failed < lane_patches.size() ? too_large(lane_patches[failed]) : status;
 }
 
@@ -267,7 +267,7 @@ Result<PatchSet> PatchSet::Impl::make(std::vector<BezierPatch> patches, std::vec
   set->collapsed.resize(set->patches.size());
   set->edited.resize(set->patches.size());
   lay_out(*set);
-  if (Status status = set->pack_all(); !status.ok()) return status;
+  if (Status status = set->pack_all(options.execution); !status.ok()) return status;
   find_largest_threshold(set->f32);
   find_largest_threshold(set->f64);
   return PatchSet(std::move(set));

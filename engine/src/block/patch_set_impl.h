@@ -168,8 +168,8 @@ class PatchSet::Impl {
     return pack_points(index, group, hull, kinds.float_points ? &f32 : nullptr, kinds.double_points ? &f64 : nullptr);
   }
   bool pack_power(std::size_t index, const BlockGroup& group, const Box3& hull);
-  /// Packs all patches. Errors: non_finite (the first patch in the order of the lanes that doesn't fit).
-  Status pack_all();
+  /// Packs all patches. Errors: non_finite (the first patch in the order of the lanes that doesn't fit), cancelled.
+  Status pack_all(const Execution& execution);
 };
 
 }}  // namespace tessera::abi_0_1

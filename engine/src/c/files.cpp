@@ -19,6 +19,7 @@ CStatus wanted_options(const tsr_read_options* given, const Execution& execution
   if (own.cad_reader) out.cad.reader = own.cad_reader;
   out.cad.step_reader = static_cast<StepReader>(own.step_reader);
   out.cad.cancel = execution.cancel;
+  out.cad.progress = execution.progress;
   return {};
 }
 

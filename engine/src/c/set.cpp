@@ -11,8 +11,9 @@ using namespace tessera;
 
 namespace tessera { inline namespace abi_0_1 { namespace {
 
-Result<PatchSet> packed(const Model& model, const tsr_set_options& options) {
+Result<PatchSet> packed(const Model& model, const tsr_set_options& options, const Execution& execution) {
   PatchSetOptions packing;
+  packing.execution = execution;
   packing.trims = (options.flags & TSR_SET_WHOLE) == 0;
   packing.blocks.double_points = (options.flags & TSR_SET_POINTS) != 0;
   packing.blocks.double_bernstein = (options.flags & TSR_SET_DOUBLE) != 0;
@@ -118,8 +119,8 @@ tsr_status tsr_set_new(tsr_set** set, const tsr_model* model, const tsr_set_opti
     tsr_set_defaults(&own);
     if (CStatus status = read_struct("tsr_set_options", options, own); status.code) return status;
     if (CStatus status = check_options(own, of->model); status.code) return status;
-    return run_work(run, [&](const Execution&) -> CStatus {
-      Result<PatchSet> made = packed(of->model, own);
+    return run_work(run, [&](const Execution& execution) -> CStatus {
+      Result<PatchSet> made = packed(of->model, own, execution);
       if (!made) return made.status();
       const std::optional<std::size_t> shape =
           own.shape < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(own.shape));

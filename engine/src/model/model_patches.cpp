@@ -56,7 +56,7 @@ Result<FaceTrims> FaceTrimsFinder::make(const std::vector<TrimLoop>& loops, cons
   return trims;
 }
 
-Status FaceTrimsFinder::find_ahead(std::span<const SurfaceLoops> faces) {
+Status FaceTrimsFinder::find_ahead(std::span<const SurfaceLoops> faces, const std::atomic<bool>* cancel) {
   constexpr std::size_t faces_per_task = 4;
   // One face of each key: faces of one key are nearly always equal.
   std::vector<std::pair<double, const SurfaceLoops*>> due;
@@ -73,7 +73,8 @@ Status FaceTrimsFinder::find_ahead(std::span<const SurfaceLoops> faces) {
       made[k].emplace(make(**face.loops, **face.grid, options_of(**face.grid, face.is_loose), *extractions));
     }
   };
-  if (Status status = parallel_for(due.size(), faces_per_task, {}, make_some); !status.ok()) return status;
+  if (Status status = parallel_for(due.size(), faces_per_task, {.cancel = cancel}, make_some); !status.ok())
+    return status;
   for (std::size_t k = 0; k < due.size(); ++k) {
     const SurfaceLoops& face = *due[k].second;
     if (*made[k])
@@ -228,6 +229,8 @@ bool ModelPatches::pass_whole_patch() {
 Status ModelPatches::add_all(const FitOptions& fit) {
   // Batches, so that the grids of a large model are not all in memory beside the patches.
   constexpr std::size_t batch = 256, surfaces_per_task = 4;
+  const Execution& execution = progress_.loops();
+  const Execution quiet{.cancel = execution.cancel};
   std::vector<SurfaceLoops> some;
   for (std::size_t first = 0; first < model_.surfaces.size(); first += batch) {
     some.clear();
@@ -240,14 +243,16 @@ Status ModelPatches::add_all(const FitOptions& fit) {
       for (std::size_t k = begin; k < end; ++k)
         if (takes_a_while(model_.surfaces[first + k].surface)) convert(k);
     };
-    if (Status status = parallel_for(some.size(), surfaces_per_task, {}, convert_some); !status.ok()) return status;
+    if (Status status = parallel_for(some.size(), surfaces_per_task, quiet, convert_some); !status.ok()) return status;
     for (std::size_t k = 0; k < some.size(); ++k)
       if (!some[k].grid) convert(k);
-    if (Status status = trims_.find_ahead(some); !status.ok()) return status;
+    if (Status status = trims_.find_ahead(some, execution.cancel); !status.ok()) return status;
     for (SurfaceLoops& of : some) {
       if (!*of.grid) return in_surface(model_, ends_.size(), of.grid->status());
       if (Status status = add(std::move(of)); !status.ok()) return status;
     }
+    if (execution.progress)
+      execution.progress(static_cast<double>(ends_.size()) / static_cast<double>(model_.surfaces.size()));
   }
   return {};
 }
@@ -258,7 +263,10 @@ Box3 ModelPatches::take_box() {
 }
 
 Result<PatchSet> ModelPatches::packed() && {
-  Result<PatchSet> set = std::move(all_).packed(options_);
+  PatchSetOptions packing = options_;
+  packing.execution = progress_.loops();
+  Result<PatchSet> set = std::move(all_).packed(packing);
+  if (set) (void)progress_.finish({});
   if (set) impl_of(*set).trim_faults = std::move(faults_);
   if (set && !edges_.faces.empty()) impl_of(*set).edges = std::make_shared<const PatchEdges>(std::move(edges_));
   if (set || set.status().index() == Status::no_index) return set;

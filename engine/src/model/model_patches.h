@@ -1,6 +1,7 @@
 #pragma once
 // Gathers the patches of a model's surfaces for one set, as trimming loops cut them.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include "block/patch_edges.h"
 #include "block/patch_set_impl.h"
 #include "block/patch_trims.h"
+#include "parallel/call_progress.h"
 #include "parallel/workspaces.h"
 #include "tessera/model.h"
 #include "trim/trim_region_impl.h"
@@ -34,8 +36,8 @@ struct SurfaceLoops {
 class FaceTrimsFinder {
  public:
   /// Finds the trims of faces by all threads, so that find() has them. Those that have none are left to find().
-  /// Errors: out_of_memory.
-  Status find_ahead(std::span<const SurfaceLoops> faces);
+  /// Errors: cancelled, out_of_memory.
+  Status find_ahead(std::span<const SurfaceLoops> faces, const std::atomic<bool>* cancel);
   /// Returns the trims of the next face, to stay until the next call.
   Result<FaceTrims*> find(const Shared<std::vector<TrimLoop>>& loops, const PatchGrid& grid, bool is_loose);
 
@@ -111,7 +113,9 @@ class ModelPatches {
                  std::size_t first, std::size_t places);
 
   const Model& model_;
+  static constexpr std::array ends_of_steps{0.9, 1.0};  ///< of the conversion, and of packing
   const PatchSetOptions options_;
+  CallProgress progress_{options_.execution, ends_of_steps};
   GatheredPatches all_;
   FaceTrimsFinder trims_;
   std::vector<NamedFace> faces_;  ///< by surface, as far as there are any

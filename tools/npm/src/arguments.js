@@ -47,7 +47,8 @@ export function setNumbers(module, struct, options, members) {
   for (const [option, member] of Object.entries(members)) {
     const value = options[option];
     if (value === undefined) continue;
-    if (typeof value !== 'number') throw invalid(`${option}: expected a number, found ${kindOf(value)}`);
+    if (typeof value !== 'number' || Number.isNaN(value))
+      throw invalid(`${option}: expected a number, found ${typeof value === 'number' ? value : kindOf(value)}`);
     const { read, bytes } = module.place(struct, member).member, isWhole = !read.includes('Float');
     if (isWhole && !(Number.isSafeInteger(value) && value >= 0 && (bytes === 8 || value < 2 ** 31)))
       throw invalid(`${option} is ${value}, expected a whole number from 0${bytes === 8 ? '' : ' to 2147483647'}`);
@@ -88,6 +89,13 @@ export function recordsOf(what, list, components) {
   if (list.length % components !== 0)
     throw invalid(`${what}: expected ${components} numbers each, found ${list.length} in all`);
   return list.length / components;
+}
+/** Returns indices of patches, and all their points with how many these are. */
+export function editOf(patches, points) {
+  const which = listOf('patches', patches, Uint32Array), where = listOf('points', points);
+  const count = recordsOf('points', where, 3);
+  if (which.length === 0 && count > 0) throw invalid(`points: found ${count}, but no patches that they are of`);
+  return { which, where, count };
 }
 /** Returns names of a table, which all must be there. */
 export function namesOf(what, names, table) {

@@ -85,19 +85,20 @@ export class Mesh {
     Object.assign(this, { vertexCount: 0, triangleCount: 0, hasNormals: false, hasParameters: false });
   }
 
-  #array(name, Type) {
-    if (!this.#struct) throw disposed(this);
+  #array(name, Type, isThere = true) {
+    void this[its.struct];  // an error where the mesh was disposed
+    if (!isThere) return null;
     const [, components, isOfVertices] = arrays[name];
     const length = components * (isOfVertices ? this.vertexCount : this.triangleCount);
     return new Type(this[its.module].exports.memory.buffer, this.#blocks[name] ?? 0, length);
   }
   get positions() { return this.#array('positions', Float32Array); }
-  get normals() { return this.hasNormals ? this.#array('normals', Float32Array) : null; }
-  get parameters() { return this.hasParameters ? this.#array('parameters', Float32Array) : null; }
+  get normals() { return this.#array('normals', Float32Array, this.hasNormals); }
+  get parameters() { return this.#array('parameters', Float32Array, this.hasParameters); }
   get triangles() { return this.#array('triangles', Uint32Array); }
   get trianglePatches() { return this.#array('trianglePatches', Uint32Array); }
   get edges() {
-    if (!this.#struct) throw disposed(this);
+    void this[its.struct];
     return this.#edges;
   }
   copy() {

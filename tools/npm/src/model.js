@@ -47,7 +47,10 @@ export class Model extends Handle {
     });
   }
 
-  get warnings() { return Array.from({ length: this.warningCount }, (_, k) => this.#text('WARNING', k)); }
+  get warnings() {
+    void this[its.handle];  // an error where it was disposed, also without warnings
+    return Array.from({ length: this.warningCount }, (_, k) => this.#text('WARNING', k));
+  }
 
   surface(index) {
     const module = this[its.module], handle = this[its.handle];

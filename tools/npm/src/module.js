@@ -172,7 +172,7 @@ export class Module {
     this.#run = { progress, signal, cancel, failure: null };
     return run.at;
   }
-  #progress(share) { this.#ask((run) => run.progress?.(share) !== false); }
+  #progress(share) { this.#ask((run) => run.progress?.(share) !== false && !run.signal?.aborted); }
   #poll() {
     if (this.#run?.signal) this.#ask((run) => !run.signal.aborted);
   }

@@ -47,7 +47,8 @@ export class Patches extends Handle {
   /** @param index below count */
   patch(index: number): PatchInfo;
   /**
-   * Sets all control points of some patches. Plans and scenes are `stale` until they are updated.
+   * Sets all control points of some patches. Scenes are `stale` until {@link Scene.refit}, and the bounds of plans hold
+   * again after {@link Plan.update}.
    * @param patches indices
    * @param points shape `[k][3]`: those of one patch after the other
    * @throws `count_mismatch`, `non_finite`; the patches before the one that `index` names are set

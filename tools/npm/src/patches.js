@@ -1,5 +1,5 @@
 // Patch sets: Bezier patches of a model, packed for meshes, rays and points.
-import { flagsOf, listOf, namesOf, optionsOf, recordsOf, setNumbers, wholeOf } from './arguments.js';
+import { editOf, flagsOf, listOf, namesOf, optionsOf, setNumbers, wholeOf } from './arguments.js';
 import { invalid } from './errors.js';
 import { Handle, adopted, describe } from './handle.js';
 import { its } from './internal.js';
@@ -80,8 +80,7 @@ export class Patches extends Handle {
   }
 
   edit(patches, points) {
-    const which = listOf('patches', patches, Uint32Array), where = listOf('points', points);
-    const count = recordsOf('points', where, 3), module = this[its.module];
+    const { which, where, count } = editOf(patches, points), module = this[its.module];
     try {
       module.scratch(({ numbers }) => module.call('tsr_set_edit', this[its.handle], numbers(which), which.length,
         numbers(where), count));

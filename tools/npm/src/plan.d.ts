@@ -101,7 +101,7 @@ export class Plan extends Handle {
    * Writes the mesh.
    * @param into a mesh of the same patches that an earlier call returned, whose memory is used again where it suffices;
    *   after an error its content is undefined
-   * @throws `stale` after an edit, `out_of_memory`, `cancelled`
+   * @throws `out_of_memory`, `cancelled`
    */
   write(into?: Mesh | null, options?: WriteOptions): Mesh;
   /**

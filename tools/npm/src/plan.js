@@ -1,5 +1,5 @@
 // Plans: how a set is divided into triangles, so that a tolerance is proven.
-import { flagsOf, listOf, optionsOf, recordsOf, setNumbers, truthOf } from './arguments.js';
+import { editOf, flagsOf, listOf, optionsOf, setNumbers, truthOf } from './arguments.js';
 import { invalid } from './errors.js';
 import { Handle, adopted, describe } from './handle.js';
 import { its } from './internal.js';
@@ -109,8 +109,7 @@ export class Plan extends Handle {
 
   update(mesh, options) {
     const { patches = [], points = [], view, ...given } = optionsOf('update', options, updateNames);
-    const which = listOf('patches', patches, Uint32Array), where = listOf('points', points);
-    const count = recordsOf('points', where, 3), module = this[its.module], handle = this[its.handle];
+    const { which, where, count } = editOf(patches, points), module = this[its.module], handle = this[its.handle];
     const struct = this.#checked('update', mesh)[its.struct];
     if (mesh[its.plan] !== this) throw invalid('update: expected the Mesh that this Plan wrote last');
     const hasChanged = module.scratch(({ keep, struct: make, numbers: lists, run }) => {

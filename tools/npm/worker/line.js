@@ -10,7 +10,8 @@ async function spawned() {
     return new Worker(new URL('./thread.js', import.meta.url), { type: 'module' });
   const threads = 'node:worker_threads';  // a name that bundlers do not follow
   const { Worker: Thread } = await import(/* @vite-ignore */ /* webpackIgnore: true */ threads);
-  return new Thread(new URL('./thread.js', import.meta.url));
+  // The program's own options, such as --input-type, are none for this file.
+  return new Thread(new URL('./thread.js', import.meta.url), { execArgv: [] });
 }
 function listen(worker, type, take) {
   if (worker.on) worker.on(type, take);
@@ -213,7 +214,9 @@ export class Line {
       entry.reject(error);
     }
     for (const each of waiting) {
-      const fault = each.uses.map((object) => (each.released === undefined ? object.fault() : error)).find(Boolean);
+      // A call that the same signal cancels has not been told yet.
+      const lost = each.released !== undefined || each.signal?.aborted ? cancelled() : null;
+      const fault = lost ?? each.uses.map((object) => object.fault()).find(Boolean);
       if (!fault) this.#queue.push(each);
       else each.reject(fault);
     }

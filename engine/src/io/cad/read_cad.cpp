@@ -47,7 +47,7 @@ Result<Model> read_by_program(CadInput& input, CadFormat format, const CadOption
 Result<Model> read_by_tessera(CadInput& input, const CadOptions& options) {
   const Result<std::string_view> text = input.bytes();
   if (!text) return text.status();
-  return read_step(*text, input.name(), {.cancel = options.cancel});
+  return read_step(*text, input.name(), {.cancel = options.cancel, .progress = options.progress});
 }
 
 /// Whether another reader may do better.

@@ -1,7 +1,9 @@
 #include "io/step/read_step.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <mutex>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "io/step/step_index.h"
 #include "io/step/step_shape.h"
 #include "io/step/step_tree.h"
+#include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 #include "tessera/guard.h"
 #include "tessera/topology.h"
@@ -20,11 +23,33 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
+/// Adds up the progress of parts, several of which may be read at once.
+class PartsProgress {
+ public:
+  PartsProgress(const Execution& execution, std::size_t parts)
+      : execution_(execution), parts_(static_cast<double>(parts)) {}
+
+  /// `share`: of one part, done since it was last reported. Threads: any number of calls at once.
+  void add(double share) {
+    if (!execution_.progress) return;
+    const std::lock_guard lock(mutex_);
+    done_ += share / parts_;
+    if (done_ < reported_ + 0.01) return;
+    reported_ = std::min(done_, 1.0);
+    execution_.progress(reported_);
+  }
+
+ private:
+  const Execution& execution_;
+  double parts_, done_ = 0, reported_ = 0;
+  std::mutex mutex_;
+};
+
 /// Gathers the shapes of parts, and their places.
 class StepModel {
  public:
   StepModel(const StepIndex& index, const StepTree& tree, const std::string& name, const Execution& execution)
-      : index_(index), tree_(tree), name_(name), execution_{.cancel = execution.cancel} {}
+      : index_(index), tree_(tree), name_(name), execution_(execution) {}
 
   /// Reads the shapes, several at once.
   Status read_shapes() {
@@ -32,8 +57,9 @@ class StepModel {
       const auto [known, is_new] = shapes_.try_emplace(key_of(place), readings_.size());
       if (is_new) readings_.push_back({&place, {}, {}, {}});
     }
+    PartsProgress progress(execution_, readings_.size());
     for (std::size_t first = 0; first < readings_.size(); first += read_at_once)
-      if (Status status = read_shapes(std::span(readings_).subspan(first)); !status.ok()) return status;
+      if (Status status = read_shapes(std::span(readings_).subspan(first), progress); !status.ok()) return status;
     return {};
   }
 
@@ -92,10 +118,11 @@ class StepModel {
 
   /// Reads the first ones of `readings`. Parts may share faces, and one part may have several colours, but a file must
   /// not grow by that.
-  Status read_shapes(std::span<Reading> readings) {
+  Status read_shapes(std::span<Reading> readings, PartsProgress& progress) {
     readings = readings.first(std::min(readings.size(), read_at_once));
-    const Status status = parallel_for(readings.size(), 1, execution_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) read(readings[k]);
+    const Execution quiet{.cancel = execution_.cancel};
+    const Status status = parallel_for(readings.size(), 1, quiet, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) read(readings[k], progress);
     });
     if (!status.ok()) return status;
     const std::size_t instances = index_.instances().size(), most = 32 * instances + (std::size_t{1} << 12);
@@ -116,7 +143,7 @@ class StepModel {
 
   static Key key_of(const StepPlacedPart& place) { return {place.part, place.colours, place.is_mirrored()}; }
 
-  void read(Reading& reading) const {
+  void read(Reading& reading, PartsProgress& progress) const {
     const StepPlacedPart& place = *reading.place;
     const StepPart& part = tree_.parts[place.part];
     const StepShapeInput input{part.items,
@@ -126,7 +153,12 @@ class StepModel {
                                place.is_mirrored(),
                                part.representation,
                                &tree_.colours[place.colours]};
-    Result<Shape> shape = step_shape(index_, input, reading.faults, execution_);
+    double done = 0;
+    const Execution reported{.cancel = execution_.cancel, .progress = [&](double share) {
+                               progress.add(share - done);
+                               done = share;
+                             }};
+    Result<Shape> shape = step_shape(index_, input, reading.faults, reported);
     if (shape)
       reading.shape = *std::move(shape);
     else
@@ -172,7 +204,7 @@ class StepModel {
   const StepIndex& index_;
   const StepTree& tree_;
   const std::string& name_;
-  const Execution execution_;
+  const Execution& execution_;
   Model model_;
   std::size_t surfaces_ = 0;  ///< of all instances so far
   std::size_t read_ = 0;      ///< faces and edges of all shapes so far
@@ -183,18 +215,22 @@ class StepModel {
 
 Result<Model> read(std::string_view text, const std::string& name, const Execution& execution) {
   const auto named = [&](const Status& status) { return Status(status.code(), name + ": " + status.message()); };
-  const Result<StepIndex> index = StepIndex::make(text, execution);
+  constexpr std::array ends{0.3, 0.95};  // of the index, and of the shapes
+  CallProgress progress(execution, ends);
+  const Result<StepIndex> index = StepIndex::make(text, progress.loops());
   if (!index) return named(index.status());
   const TextEncoding encoding = encoding_of(text);
   const Result<StepTree> tree = read_step_tree(*index, encoding);
   if (!tree) return named(tree.status());
-  StepModel model(*index, *tree, name, execution);
+  StepModel model(*index, *tree, name, progress.loops());
   if (Status status = model.read_shapes(); !status.ok()) return named(status);
   if (Status status = model.place_shapes(); !status.ok()) return named(status);
   std::vector<std::string> notes;
   if (encoding != TextEncoding::utf8)
     notes.push_back(std::string("its names are not UTF-8, and are taken as ") + name_of(encoding));
-  return model.finish(notes);
+  Result<Model> made = model.finish(notes);
+  if (made) (void)progress.finish({});
+  return made;
 }
 
 }  // namespace

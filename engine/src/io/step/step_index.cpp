@@ -34,8 +34,11 @@ class StepIndexMaker {
 
   Status make(const Execution& execution) {
     if (Status status = scan_pieces(execution); !status.ok()) return status;
-    for (std::size_t at = skip_blanks(text_, 0); at < text_.size();)
+    for (std::size_t at = skip_blanks(text_, 0); at < text_.size();) {
+      if (Status status = report(at, execution); !status.ok()) return status;
       at = text_[at] == '#' ? instances(at) : statement(at);
+    }
+    if (execution.progress && pieces_.empty()) execution.progress(1);
     if (!has_data_) return {StatusCode::parse_error, "no DATA section was found: this is not a STEP file"};
     if (index_.instances_.size() > max_instances)
       return {StatusCode::unsupported, "a STEP file of more than 2^32 - 2 instances"};
@@ -54,6 +57,7 @@ class StepIndexMaker {
     const std::size_t data = std::min(text_.find("DATA"), text_.size());
     const std::size_t count = arena_threads() > 1 ? (text_.size() - data) / piece_bytes : 0;
     pieces_.resize(count);
+    if (count == 0) return {};
     return parallel_for(count, 1, execution, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t from = data + k * piece_bytes, to = k + 1 < count ? from + piece_bytes : text_.size();
@@ -62,12 +66,24 @@ class StepIndexMaker {
     });
   }
 
+  /// Reports a place of the text about once for each piece. Errors: cancelled.
+  Status report(std::size_t at, const Execution& execution) {
+    if (at < next_report_) return {};
+    next_report_ = at + piece_bytes;
+    if (execution.cancel && execution.cancel->load(std::memory_order_relaxed))
+      return {StatusCode::cancelled, "cancelled by the caller"};
+    if (execution.progress && pieces_.empty())
+      execution.progress(static_cast<double>(at) / static_cast<double>(text_.size()));
+    return {};
+  }
+
   /// Takes instances from a place on. Returns the place of the next statement.
   std::size_t instances(std::size_t at) {
     if (!is_data_) return skip_statement(at);
     while (next_piece_ < pieces_.size() && pieces_[next_piece_].begin < at) ++next_piece_;
     const bool fits = next_piece_ < pieces_.size() && pieces_[next_piece_].begin == at;
-    const std::size_t limit = next_piece_ < pieces_.size() ? pieces_[next_piece_].begin : text_.size();
+    const std::size_t next = next_piece_ < pieces_.size() ? pieces_[next_piece_].begin : at + piece_bytes;
+    const std::size_t limit = std::min(next, text_.size());
     const StepRun run = fits ? std::move(pieces_[next_piece_++]) : scan_instances(text_, at, limit);
     for (StepInstance instance : run.instances) {
       if (instance.kind != StepIndex::several_kinds) instance.kind = kinds_.index_of(run.kinds.names()[instance.kind]);
@@ -133,7 +149,7 @@ class StepIndexMaker {
   std::string_view text_;
   StepIndex& index_;
   std::vector<StepRun> pieces_;
-  std::size_t next_piece_ = 0;
+  std::size_t next_piece_ = 0, next_report_ = piece_bytes;
   KindNames kinds_;
   bool is_data_ = false, has_data_ = false;
   std::vector<std::uint64_t> scopes_;  ///< numbers of the instances whose scopes are open

@@ -1,6 +1,7 @@
 #include "io/step/step_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "io/step/step_face.h"
 #include "io/step/step_shell_sides.h"
 #include "io/step/step_topology.h"
+#include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -28,14 +30,10 @@ double tolerance_of(double uncertainty, const Box3& box) {
 class ShapeMaker {
  public:
   ShapeMaker(const StepIndex& index, const StepShapeInput& input, StepShapeFaults& faults, const Execution& execution)
-      : geometry_(index, input.units),
-        input_(input),
-        faults_(faults),
-        index_(index),
-        execution_{.cancel = execution.cancel} {}
+      : geometry_(index, input.units), input_(input), faults_(faults), index_(index), progress_(execution, loop_ends) {}
 
   Result<Shape> make() {
-    Result<StepTopology> topology = StepTopology::make(index_, input_.items, input_.is_mirrored, execution_);
+    Result<StepTopology> topology = StepTopology::make(index_, input_.items, input_.is_mirrored, progress_.loops());
     if (!topology) return topology.status();
     topology_ = *std::move(topology);
     for (std::string& sentence : topology_.unread) faults_.left_out.push_back(std::move(sentence));
@@ -55,19 +53,21 @@ class ShapeMaker {
 
  private:
   static constexpr std::size_t grain = 16;
+  static constexpr std::array loop_ends{0.02, 0.2, 1.0};  // of the loops over vertices, edges and faces
 
   Status make_vertices() {
     shape_.vertices.resize(topology_.vertices.size());
     std::vector<Status> faults(shape_.vertices.size());
-    Status status = parallel_for(shape_.vertices.size(), 256, execution_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const Result<Vec3> p = geometry_.point(topology_.vertices[k]);
-        if (p)
-          shape_.vertices[k].position = *p;
-        else
-          faults[k] = p.status();
-      }
-    });
+    Status status =
+        parallel_for(shape_.vertices.size(), 256, progress_.loops(), [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) {
+            const Result<Vec3> p = geometry_.point(topology_.vertices[k]);
+            if (p)
+              shape_.vertices[k].position = *p;
+            else
+              faults[k] = p.status();
+          }
+        });
     if (!status.ok()) return status;
     Box3 box;
     for (std::size_t k = 0; k < faults.size(); ++k)
@@ -102,9 +102,10 @@ class ShapeMaker {
   Status make_edges() {
     shape_.edges.resize(topology_.edges.size());
     std::vector<char> reversed(shape_.edges.size());
-    Status status = parallel_for(shape_.edges.size(), grain, execution_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) reversed[k] = make_edge(topology_.edges[k], shape_.edges[k]);
-    });
+    Status status =
+        parallel_for(shape_.edges.size(), grain, progress_.loops(), [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) reversed[k] = make_edge(topology_.edges[k], shape_.edges[k]);
+        });
     reversed_.assign(reversed.begin(), reversed.end());
     return status;
   }
@@ -145,7 +146,7 @@ class ShapeMaker {
     // Each face has a copy of its surface, but a file must not grow by that. Fits have a limit of their own.
     const std::size_t max_points = 64 * index_.instances().size() + (std::size_t{1} << 22);
     std::atomic<std::size_t> points = 0;
-    Status status = parallel_for(topology_.faces.size(), 4, execution_, [&](std::size_t begin, std::size_t end) {
+    Status status = parallel_for(topology_.faces.size(), 4, progress_.loops(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end && points <= max_points; ++k) {
         StepFace& face = topology_.faces[k];
         if (!face.status.ok()) continue;
@@ -216,7 +217,7 @@ class ShapeMaker {
   const StepShapeInput& input_;
   StepShapeFaults& faults_;
   const StepIndex& index_;
-  Execution execution_;
+  CallProgress progress_;
   StepTopology topology_;
   Shape shape_;
   std::vector<bool> reversed_;
