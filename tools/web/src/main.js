@@ -15,7 +15,15 @@ let numbers = null, parts = null;
 let reading = null, measuring = null;  // AbortControllers
 let selected = [];
 
-const viewer = new Viewer(canvas, { onPicture: showProof, onError: (error) => fail(error.message) });
+const viewer = viewerOf();
+function viewerOf() {
+  try {
+    return new Viewer(canvas, { onPicture: showProof, onError: (error) => fail(error.message) });
+  } catch (error) {
+    fail(`The picture needs WebGL 2, which this browser does not give: ${error.message}`);
+    throw error;
+  }
+}
 
 function say(sentence) { $('live').textContent = sentence; }
 function fail(sentence) {

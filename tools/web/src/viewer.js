@@ -66,6 +66,7 @@ export class Viewer {
     Object.assign(this.#controls,
       { enableDamping: !isCalm(), dampingFactor: 0.2, zoomToCursor: true, rotateSpeed: 0.9 });
     this.#controls.addEventListener('change', () => this.redraw());
+    canvas.addEventListener('webglcontextrestored', () => this.redraw());
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
     this.#resize();
     const materials = { surfaces: [this.#wire.material, this.#flat], points: this.#dot.material };
