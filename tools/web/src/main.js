@@ -52,6 +52,7 @@ async function show(source) {
       reading = null;
       $('busy').hidden = true;
       $('empty').hidden = open !== null;
+      $('main').classList.toggle('is-empty', open === null);
     }
   }
 }
@@ -254,5 +255,7 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', takeColour
 takeColours();
 
 const asked = sourceOfAddress();
-if (asked) show(asked);
-else prepare().catch((error) => fail(error.message));
+if (asked) {
+  $('main').classList.remove('is-empty');  // the layout that the model will have
+  show(asked);
+} else prepare().catch((error) => fail(error.message));
