@@ -109,6 +109,10 @@ export class Model extends Handle {
   shape(index: number): { name: string };
   /** @param index below instanceCount */
   instance(index: number): InstanceInfo;
+  /** All surfaces, shapes and instances in their order, by one call each. */
+  surfaces(): SurfaceInfo[];
+  shapes(): { name: string }[];
+  instances(): InstanceInfo[];
   /**
    * Makes a model whose faces share edges where these run side by side.
    * @param distance a length; 0 (default): one that suits the faces

@@ -75,6 +75,10 @@ export class Model extends Handle {
     return { name: this.#text('INSTANCE', index), ...rest, colour: hasColour ? colour : null };
   }
 
+  surfaces() { return Array.from({ length: this.surfaceCount }, (_, k) => this.surface(k)); }
+  shapes() { return Array.from({ length: this.shapeCount }, (_, k) => this.shape(k)); }
+  instances() { return Array.from({ length: this.instanceCount }, (_, k) => this.instance(k)); }
+
   join(distance = 0) {
     if (typeof distance !== 'number') throw invalid('join: expected a distance');
     const module = this[its.module];
