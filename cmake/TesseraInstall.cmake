@@ -118,6 +118,12 @@ install(FILES ${PROJECT_SOURCE_DIR}/tools/models/FORMAT.md ${PROJECT_SOURCE_DIR}
 if(TESSERA_BUILD_TOOLS)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/tessera/JSON.md DESTINATION ${doc_dir})
   install(TARGETS tessera_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The page of tessera view, which the preset "wasm" makes (target tessera_web). Looked for at the installation.
+  set(TESSERA_WEB_FOLDER ${PROJECT_SOURCE_DIR}/build/wasm/web CACHE STRING
+    "The page of tessera view that is installed if it is there; empty: none")
+  if(TESSERA_WEB_FOLDER)
+    install(DIRECTORY ${TESSERA_WEB_FOLDER}/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/tessera/web OPTIONAL)
+  endif()
   if(TESSERA_HAS_MPI)
     install(TARGETS tessera_mpi_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
