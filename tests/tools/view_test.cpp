@@ -147,6 +147,21 @@ TEST_F(View, HeadersSaveThePage) {
   }
 }
 
+TEST_F(View, ScriptsWithinThePageAreMarked) {
+  folder_.file("web/index.html", "<script type=\"importmap\">{}</script><p><script src=\"a.js\"></script>");
+  std::string nonces[2];
+  for (std::string& nonce : nonces) {
+    serve({teapot, "--web", "web", "--no-browser"});
+    const std::string response = ask("/");
+    const std::size_t at = response.find("; script-src 'self' 'wasm-unsafe-eval' 'nonce-") + 46;
+    nonce = response.substr(at, response.find('\'', at) - at);
+    EXPECT_EQ(nonce.size(), 32u) << response;
+    EXPECT_EQ(body_of(response), "<script nonce=\"" + nonce + "\" type=\"importmap\">{}</script><p><script nonce=\"" +
+                                     nonce + "\" src=\"a.js\"></script>");
+  }
+  EXPECT_NE(nonces[0], nonces[1]);
+}
+
 TEST_F(View, NothingOutsideTheFolderIsServed) {
   serve({teapot, "--web", "web", "--no-browser"});
   for (const char* const path :

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstdlib>
+#include <random>
 #include <system_error>
 
 namespace tessera::cli {
@@ -15,6 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view model_folder = "/model/";
 constexpr const char* first_page = "index.html";
 constexpr const char* unknown_type = "application/octet-stream";
+constexpr std::uint64_t max_page_bytes = 1 << 20;
 
 constexpr std::array<std::pair<std::string_view, const char*>, 13> types{{{".html", "text/html; charset=utf-8"},
                                                                           {".js", "text/javascript; charset=utf-8"},
@@ -37,12 +40,43 @@ const char* type_of(const fs::path& name) {
 }
 
 /// What a page from here may do: its own scripts, workers and WebAssembly, and nothing of the network.
-constexpr const char* content_policy =
-    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; connect-src 'self' blob: "
-    "data:; "
-    "style-src 'self' 'unsafe-inline'; img-src 'self' blob: data:; font-src 'self'; manifest-src 'self'; base-uri "
-    "'none'; "
-    "form-action 'none'; frame-ancestors 'none'";
+std::string content_policy(const std::string& nonce) {
+  return "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-" + nonce +
+         "'; worker-src 'self' blob:; connect-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
+         "img-src 'self' blob: data:; font-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; "
+         "frame-ancestors 'none'";
+}
+
+/// 128 random bits in hexadecimal digits.
+std::string random_digits() {
+  std::random_device device;
+  std::string text;
+  for (int k = 0; k < 4; ++k) {
+    std::array<char, 9> digits{};
+    std::snprintf(digits.data(), digits.size(), "%08x", device());
+    text += digits.data();
+  }
+  return text;
+}
+
+/// Marks the scripts of a page by a nonce: an import map stands within the page, and no file of its own may be one.
+std::string with_nonce(std::string page, const std::string& nonce) {
+  constexpr std::string_view tag = "<script";
+  const std::string attribute = " nonce=\"" + nonce + "\"";
+  for (std::size_t at = 0; (at = page.find(tag, at)) != std::string::npos; at += tag.size() + attribute.size())
+    page.insert(at + tag.size(), attribute);
+  return page;
+}
+
+/// The whole content of a response's file, which is small.
+std::string text_of(const HttpResponse& response) {
+  std::string text(std::min<std::uint64_t>(response.file_bytes, max_page_bytes), '\0');
+  std::size_t size = 0;
+  for (ssize_t got = 1; size < text.size() && got > 0; size += static_cast<std::size_t>(std::max<ssize_t>(got, 0)))
+    got = ::read(response.file.number(), text.data() + size, text.size() - size);
+  text.resize(size);
+  return text;
+}
 
 /// The response with an open file as its content; null is 404.
 HttpResponse file_response(Descriptor file, const char* type) {
@@ -88,7 +122,8 @@ Status no_page(const std::string& looked_for) {
 
 }  // namespace
 
-Site::Site(Descriptor folder, ServedModel model) : folder_(std::move(folder)), model_(std::move(model)) {}
+Site::Site(Descriptor folder, ServedModel model, std::string nonce)
+    : folder_(std::move(folder)), model_(std::move(model)), nonce_(std::move(nonce)) {}
 
 Result<Site> Site::make(const fs::path& folder, ServedModel model) {
   Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -96,7 +131,7 @@ Result<Site> Site::make(const fs::path& folder, ServedModel model) {
     return Status(StatusCode::io_error,
                   folder.string() + ": cannot be opened: " + std::system_category().message(errno));
   if (!open_below(opened, first_page).is_open()) return no_page(folder.string() + " has no file index.html");
-  return Site(std::move(opened), std::move(model));
+  return Site(std::move(opened), std::move(model), random_digits());
 }
 
 std::string Site::address() const {
@@ -114,6 +149,15 @@ HttpResponse Site::model_response() const {
   return response;
 }
 
+HttpResponse Site::page_response(const std::string& name) const {
+  HttpResponse response = file_response(open_below(folder_, name), type_of(name));
+  if (response.status == 200 && name.ends_with(".html")) {
+    response.text = std::make_shared<const std::string>(with_nonce(text_of(response), nonce_));
+    response.file = {};
+  }
+  return response;
+}
+
 HttpResponse Site::respond(const HttpRequest& request) const {
   const std::string_view path = request.path;
   HttpResponse response;
@@ -121,10 +165,9 @@ HttpResponse Site::respond(const HttpRequest& request) const {
     const bool is_known = path.substr(model_folder.size()) == model_.name;
     response = is_known ? model_response() : text_response(404, "There is no such model.");
   } else {
-    const std::string_view name = path == "/" ? first_page : path.substr(1);
-    response = file_response(open_below(folder_, name), type_of(name));
+    response = page_response(path == "/" ? first_page : std::string(path.substr(1)));
   }
-  response.headers.emplace_back("Content-Security-Policy", content_policy);
+  response.headers.emplace_back("Content-Security-Policy", content_policy(nonce_));
   return response;
 }
 

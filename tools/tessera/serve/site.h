@@ -30,11 +30,13 @@ class Site {
   HttpResponse respond(const HttpRequest& request) const;
 
  private:
-  Site(Descriptor folder, ServedModel model);
+  Site(Descriptor folder, ServedModel model, std::string nonce);
   HttpResponse model_response() const;
+  HttpResponse page_response(const std::string& name) const;
 
   Descriptor folder_;
   ServedModel model_;
+  std::string nonce_;  ///< marks the scripts within pages, so that no others run
 };
 
 /// The folders in which the page is looked for: beside this program as it is installed, and where it is built.
