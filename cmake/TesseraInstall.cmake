@@ -36,7 +36,8 @@ function(tessera_install_python)
       FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "live.js" PATTERN "__pycache__" EXCLUDE)
     # What live views need, where it is built (target tessera_npm of the preset "wasm").
     install(DIRECTORY ${TESSERA_NPM_FOLDER}/ DESTINATION ${TESSERA_PYTHON_DIR}/tessera/npm COMPONENT python3-tessera OPTIONAL
-      FILES_MATCHING PATTERN "*.js" PATTERN "package.json" PATTERN "LICENSE" PATTERN "tessera.wasm")
+      FILES_MATCHING PATTERN "*.js" PATTERN "package.json" PATTERN "LICENSE" PATTERN "tessera.wasm"
+      PATTERN "three" EXCLUDE PATTERN "worker" EXCLUDE PATTERN "node_modules" EXCLUDE)
     set(info ${PROJECT_BINARY_DIR}/python/tessera-${PROJECT_VERSION}.dist-info)
     string(JOIN "\n" metadata "Metadata-Version: 2.1" "Name: tessera" "Version: ${PROJECT_VERSION}"
       "Summary: ${PROJECT_DESCRIPTION}" "Requires-Python: >=3.9" "Requires-Dist: numpy>=1.22" "")

@@ -308,7 +308,7 @@ TEST_F(View, FilesOfOpenCascadeAreConverted) {
   const json facts = json::parse(output_of({"info", "shown.json", "--json"}));
   EXPECT_GT(facts["surfaces"], 10);
   EXPECT_GT(facts["trimmed_surfaces"], 0);
-  EXPECT_THAT(interrupt().errors, HasSubstr("without colours and parts"));
+  EXPECT_THAT(interrupt().errors, HasSubstr("without unit, colours, parts and common edges"));
 }
 #endif
 

@@ -63,7 +63,8 @@ Result<ServedModel> convert(const Job& job, std::string name, Timings& timings) 
       timings.measure("write", [&] { return write_model_bytes(loaded->model, name, bytes, {}); });
   if (!written) return written.status();
   for (const std::string& warning : written->warnings) warn(warning);
-  warn(job.inputs[0] + ": read once by OpenCASCADE and shown as surfaces with trims, without colours and parts");
+  warn(job.inputs[0] +
+       ": read once, by OpenCASCADE; the page gets surfaces with trims, without unit, colours, parts and common edges");
   return ServedModel{std::move(name), {}, std::make_shared<const std::string>(std::move(bytes))};
 }
 
@@ -106,8 +107,8 @@ Status run_view(const Job& job, const ViewOptions& options, const CommonOptions&
 constexpr const char* view_footer =
     R"(Prints the page's address, opens it in the browser, and serves until Ctrl-C. The browser does all the work: the
 page is Tessera as WebAssembly, and needs no network. Reloading it reads the file again. One model at a time.
-IGES and BREP files, which browsers cannot read, are read here, once: the page shows their surfaces and trims, without
-colours and parts.
+IGES and BREP files, which browsers cannot read, are read here, once: the page gets their surfaces and trims, without
+unit, colours, parts and common edges.
 The page's folder is looked for beside the installed program (share/tessera/web) and in the build (build/wasm/web),
 unless --web or the environment variable TESSERA_WEB names it. Only programs on this machine can connect.
 
