@@ -64,6 +64,12 @@ function(tessera_wasm_module)
     COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_FILE:tessera_wasm> ${PROJECT_SOURCE_DIR}/LICENSE ${package}
     COMMAND ${NODE} ${sources}/layout.mjs ${PROJECT_SOURCE_DIR}/engine/include/tessera ${package}/src/layout.js)
 
+  # The page in one folder, with that package and with three: `npm ci` in tools/web fetches it.
+  set(page ${PROJECT_SOURCE_DIR}/tools/web)
+  add_custom_target(tessera_web DEPENDS tessera_npm COMMENT "Making ${PROJECT_BINARY_DIR}/web" VERBATIM
+    COMMAND ${CMAKE_COMMAND} -E chdir ${page} sh -c "[ -d node_modules/three ] || npm ci"
+    COMMAND ${NODE} ${page}/assemble.mjs ${package} ${PROJECT_BINARY_DIR}/web)
+
   # The kernels alone, for tests/wasm.
   set(jobs tessera_wasm_kernel_jobs)
   add_executable(${jobs} EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tests/kernel/neon64/kernel_jobs.cpp

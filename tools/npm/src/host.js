@@ -34,18 +34,26 @@ function wasiOf(memory) {
   };
 }
 
+function gbkOf(bytes) {
+  try {
+    return new TextDecoder('gbk').decode(bytes);
+  } catch {
+    return '';  // Node without the tables of languages
+  }
+}
+
 /**
- * Returns the imports of a compiled module. `memory()`: the instance's memory; `progress(share, user)`: called as
- * tsr_run.progress.
+ * Returns the imports of a compiled module. `memory()`: the instance's memory; `progress(share)`: called as
+ * tsr_run.progress; `poll()`: called often while a call runs, and may set its tsr_run.cancel.
  */
-export function importsOf(module, memory, progress) {
+export function importsOf(module, memory, { progress, poll }) {
   const wasi = wasiOf(memory);
   const host = {
     decode_gbk: (from, bytes, to, room) => {
-      const text = new TextDecoder('gbk').decode(new Uint8Array(memory().buffer, from, bytes));
+      const text = gbkOf(new Uint8Array(memory().buffer, from, bytes));
       return new TextEncoder().encodeInto(text, new Uint8Array(memory().buffer, to, room)).written;
     },
-    progress,
+    progress, poll,
   };
   const imports = { wasi_snapshot_preview1: {}, tessera: host };
   for (const { module: from, name } of WebAssembly.Module.imports(module))
@@ -56,8 +64,12 @@ export function importsOf(module, memory, progress) {
 /** Returns the compiled module of bytes, of an address, or of a module that is compiled already. */
 export async function compiled(source) {
   if (source instanceof WebAssembly.Module) return source;
-  if (typeof source === 'string' || source instanceof URL) return compiledAt(new URL(source, import.meta.url));
+  if (typeof source === 'string' || source instanceof URL) return compiledAt(new URL(source, base()));
   return WebAssembly.compile(source);
+}
+/** What addresses are relative to: the page, or the working folder. */
+function base() {
+  return globalThis.document?.baseURI ?? globalThis.location?.href ?? `file://${globalThis.process?.cwd() ?? ''}/`;
 }
 
 async function compiledAt(url) {

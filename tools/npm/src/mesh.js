@@ -1,6 +1,7 @@
 // Meshes in the module's memory.
-import { TesseraError, invalid } from './errors.js';
-import { describe } from './handle.js';
+import { stringOf } from './arguments.js';
+import { describe, disposed } from './handle.js';
+import { its } from './internal.js';
 import { fileOf } from './model.js';
 
 // The arrays of a mesh: the member of tsr_mesh, numbers of a record, and whether records are vertices.
@@ -13,92 +14,120 @@ const reportNames = ['vertices', 'distinct_positions', 'triangles', 'open_edges'
 
 export class Mesh {
   #struct;
+  #set;  // a reference to the patches, which save() needs
   #blocks = {};
   #room = { vertices: 0, triangles: 0 };
   #edges = null;
+  #keepsParameters;
 
-  constructor(patches, hasParameters) {
-    const { module } = patches;
-    Object.defineProperties(this, { patches: { value: patches }, module: { value: module } });
-    this.hasParameters = hasParameters;
+  constructor(patches, keepsParameters) {
+    const module = patches[its.module], set = patches[its.handle];
+    Object.defineProperties(this, { patches: { value: patches }, [its.module]: { value: module } });
+    this[its.plan] = null;  // the plan that wrote it
+    this.origin = patches.origin;
+    this.#keepsParameters = keepsParameters;
     this.#struct = module.struct('tsr_mesh');
-    this.vertexCount = this.triangleCount = 0;
+    try {
+      module.call('tsr_retain', set);
+    } catch (error) {
+      module.free(this.#struct.at);
+      throw error;
+    }
+    this.#set = set;
+    this.#empty();
   }
 
-  get struct() {
-    if (!this.#struct) throw new TesseraError('invalid_handle', 'the Mesh was disposed');
+  get [its.struct]() {
+    if (!this.#struct) throw disposed(this);
     return this.#struct.at;
   }
-  get origin() { return this.patches.origin; }
 
   /** Makes room for the mesh of a plan; what it holds already is kept where it suffices. */
-  resize({ vertices, triangles, hasNormals }) {
-    const { module, struct } = this;
-    const isShort = vertices > this.#room.vertices || triangles > this.#room.triangles;
-    if (isShort) this.#allocate(vertices, triangles);
-    this.hasNormals = hasNormals;
-    Object.assign(this, { vertexCount: vertices, triangleCount: triangles });
-    const set = (member, value) => module.set({ at: struct, name: 'tsr_mesh' }, member, value);
+  [its.resize]({ vertices, triangles, hasNormals, hasParameters }) {
+    const module = this[its.module], at = this[its.struct];
+    if (vertices > this.#room.vertices || triangles > this.#room.triangles) this.#allocate(vertices, triangles);
+    hasParameters &&= this.#keepsParameters;
+    Object.assign(this, { vertexCount: vertices, triangleCount: triangles, hasNormals, hasParameters });
+    this.#edges = null;
+    const set = (member, value) => module.set({ at, name: 'tsr_mesh' }, member, value);
     for (const [name, [member, , isOfVertices]] of Object.entries(arrays)) {
-      const isWanted = name === 'normals' ? hasNormals : name !== 'parameters' || this.hasParameters;
+      const isWanted = name === 'normals' ? hasNormals : name !== 'parameters' || hasParameters;
       set(member, isWanted ? this.#blocks[name] : 0);
       if (isOfVertices) set(member.replace('data', 'count'), isWanted ? vertices : 0);
     }
     set('triangle_count', triangles);
   }
   #allocate(vertices, triangles) {
-    const { module } = this;
-    this.#free();
     // A quarter more, so that a mesh that follows a view is not allocated anew each time.
-    const room = { vertices: Math.ceil(1.25 * vertices), triangles: Math.ceil(1.25 * triangles) };
-    for (const [name, [, components, isOfVertices]] of Object.entries(arrays))
-      if (name !== 'parameters' || this.hasParameters)
-        this.#blocks[name] = module.allocate(4 * components * (isOfVertices ? room.vertices : room.triangles));
-    this.#room = room;
+    for (const factor of [1.25, 1]) {
+      const room = { vertices: Math.ceil(factor * vertices), triangles: Math.ceil(factor * triangles) };
+      try {
+        this.#empty();
+        for (const [name, [, components, isOfVertices]] of Object.entries(arrays)) {
+          if (name === 'parameters' && !this.#keepsParameters) continue;
+          const records = isOfVertices ? room.vertices : room.triangles;
+          this.#blocks[name] = this[its.module].allocate(4 * components * records);
+        }
+        this.#room = room;
+        return;
+      } catch (error) {
+        this.#empty();
+        if (factor === 1 || error.code !== 'out_of_memory') throw error;
+      }
+    }
   }
-  #free() {
-    this.module.free(...Object.values(this.#blocks));
+  #empty() {
+    const blocks = Object.values(this.#blocks);
+    this[its.module].free(...blocks);
     this.#blocks = {};
     this.#room = { vertices: 0, triangles: 0 };
+    this.#edges = null;
+    Object.assign(this, { vertexCount: 0, triangleCount: 0, hasNormals: false, hasParameters: false });
   }
 
   #array(name, Type) {
+    if (!this.#struct) throw disposed(this);
     const [, components, isOfVertices] = arrays[name];
-    if (!this.#struct) throw new TesseraError('invalid_handle', 'the Mesh was disposed');
     const length = components * (isOfVertices ? this.vertexCount : this.triangleCount);
-    return new Type(this.module.exports.memory.buffer, this.#blocks[name] ?? 0, length);
+    return new Type(this[its.module].exports.memory.buffer, this.#blocks[name] ?? 0, length);
   }
   get positions() { return this.#array('positions', Float32Array); }
   get normals() { return this.hasNormals ? this.#array('normals', Float32Array) : null; }
   get parameters() { return this.hasParameters ? this.#array('parameters', Float32Array) : null; }
   get triangles() { return this.#array('triangles', Uint32Array); }
   get trianglePatches() { return this.#array('trianglePatches', Uint32Array); }
-  /** The edges of shapes as pairs of vertices; null unless the plan was made with `edges`. */
-  get edges() { return this.#edges; }
-
-  takeEdges(plan) {
-    const { module } = this;
-    this.#edges = plan.hasEdges && module.scratch(({ keep }) => {
-      const count = keep(module.allocate(4));
-      module.call('tsr_plan_edges', plan.handle, 0, 0, count);
-      const lines = module.view.getUint32(count, true), at = keep(module.allocate(8 * lines));
-      module.call('tsr_plan_edges', plan.handle, at, lines, count);
-      return new Uint32Array(module.exports.memory.buffer, at, 2 * lines).slice();
-    }) || null;
+  get edges() {
+    if (!this.#struct) throw disposed(this);
+    return this.#edges;
+  }
+  copy() {
+    const lists = Object.fromEntries(Object.keys(arrays).map((name) => [name, this[name]?.slice() ?? null]));
+    return { ...lists, edges: this.edges?.slice() ?? null, origin: [...this.origin] };
   }
 
-  check() { return describe(this.module, 'tsr_mesh_check', 'tsr_mesh_report', reportNames, this.struct); }
-  /** The bytes of a file: 'glb', 'obj', 'ply', 'stl' or 'gltf'. */
+  [its.takeEdges](plan) {
+    const module = this[its.module], handle = plan[its.handle];
+    this.#edges = module.scratch(({ keep }) => {
+      const count = keep(module.allocate(4));
+      module.call('tsr_plan_edges', handle, 0, 0, count);
+      const lines = module.view.getUint32(count, true), at = keep(module.allocate(8 * lines));
+      module.call('tsr_plan_edges', handle, at, lines, count);
+      return new Uint32Array(module.exports.memory.buffer, at, 2 * lines).slice();
+    });
+  }
+
+  check() { return describe(this[its.module], 'tsr_mesh_check', 'tsr_mesh_report', reportNames, this[its.struct]); }
   save(format) {
-    if (typeof format !== 'string') throw invalid('save: expected a format, such as glb');
-    return this.module.scratch(({ text }) =>
-      fileOf(this.module, 'tsr_mesh_bytes', this.struct, this.patches.handle, text(`mesh.${format}`)));
+    const module = this[its.module], struct = this[its.struct], name = `mesh.${stringOf('format', format)}`;
+    return module.scratch(({ text }) => fileOf(module, 'tsr_mesh_bytes', struct, this.#set, text(name)));
   }
   get isDisposed() { return this.#struct === null; }
   dispose() {
     if (!this.#struct) return;
-    this.#free();
-    this.module.free(this.#struct.at);
+    const module = this[its.module];
+    this.#empty();
+    module.free(this.#struct.at);
+    module.release(this.#set);
     this.#struct = null;
   }
 }

@@ -6,7 +6,8 @@ const decoder = new TextDecoder(), encoder = new TextEncoder();
 
 export class Module {
   #view = null;
-  #run = null;  // { progress, cancel, error } of the call that runs
+  #run = null;  // { progress, signal, cancel, failure } of the call that runs
+  #isBusy = false;
   #broken = null;
   #index = 0;  // where an error's index is written: there is room for it even if memory has run out
 
@@ -14,9 +15,11 @@ export class Module {
   static async load(source, layout) {
     const module = await compiled(source);
     let made;
-    const imports = importsOf(module, () => made.exports.memory, (share) => made.#progress(share));
+    const imports = importsOf(module, () => made.exports.memory,
+      { progress: (share) => made.#progress(share), poll: () => made.#poll() });
     made = new Module(layout);
     made.exports = (await WebAssembly.instantiate(module, imports)).exports;
+    if (!made.exports.tsr_version) throw new Error('expected tessera.wasm, found another module');
     made.exports._initialize();
     made.#index = made.allocate(8);
     return made;
@@ -26,6 +29,8 @@ export class Module {
     this.structs = structs;
     this.constants = constants;
   }
+  /** Whether a call has trapped. */
+  get isBroken() { return this.#broken !== null; }
 
   /** All memory; it holds until the next call, which may make the memory grow. */
   get view() {
@@ -41,18 +46,31 @@ export class Module {
   }
 
   allocate(size) {
-    const at = size < 2 ** 31 ? this.#trapped(() => this.exports.malloc(Math.max(size, 1))) >>> 0 : 0;
+    const at = size < 2 ** 31 ? this.#trapped('malloc', [Math.max(size, 1)]) >>> 0 : 0;
     if (at === 0) throw new TesseraError('out_of_memory', `${size} bytes are more than the module's memory has left`);
     return at;
   }
   /** Copies bytes, with a 0 behind them. */
   copy(bytes) {
-    const at = this.allocate(bytes.length + 1);
-    this.bytes(at, bytes.length).set(bytes);
-    this.view.setUint8(at + bytes.length, 0);
+    const apart = this.#apart(bytes), at = this.allocate(apart.length + 1);
+    this.bytes(at, apart.length).set(apart);
+    this.view.setUint8(at + apart.length, 0);
     return at;
   }
-  free(...all) { for (const at of all) this.exports.free(at); }
+  /** Copies a Float64Array or a Uint32Array. */
+  numbers(list) {
+    const apart = this.#apart(list), at = this.allocate(apart.byteLength);
+    const Type = apart instanceof Uint32Array ? Uint32Array : Float64Array;
+    new Type(this.exports.memory.buffer, at, apart.length).set(apart);
+    return at;
+  }
+  // A view of the module's own memory is detached where an allocation makes that grow.
+  #apart(array) { return array.buffer === this.exports.memory.buffer ? array.slice() : array; }
+  free(...all) {
+    if (this.#broken) return;
+    this.#check();
+    for (const at of all) this.exports.free(at);
+  }
 
   /** Makes a struct with its size set; `defaults`: the function that fills it. */
   struct(name, defaults) {
@@ -88,8 +106,8 @@ export class Module {
 
   /** Calls a function that returns a status; throws a TesseraError with the library's sentence. */
   call(name, ...values) {
-    const code = this.#trapped(() => this.exports[name](...values));
-    if (this.#run?.error) throw this.#run.error;
+    const code = this.#trapped(name, values);
+    if (this.#run?.failure) throw this.#run.failure.error;
     if (code === 0) return;
     const message = this.text(this.exports.tsr_last_message(this.#index));
     const index = Number(this.view.getBigInt64(this.#index, true));
@@ -98,20 +116,30 @@ export class Module {
   /** Calls a function whose first argument is the place of a new handle, which is returned. */
   make(name, ...values) {
     const at = this.allocate(4);
+    this.view.setUint32(at, 0, true);
     try {
       this.call(name, at, ...values);
       return this.view.getUint32(at, true);
+    } catch (error) {
+      this.release(this.view.getUint32(at, true));  // made before progress() threw at its last call
+      throw error;
     } finally {
       this.free(at);
     }
   }
+  release(handle) {
+    if (handle !== 0 && !this.#broken) this.exports.tsr_release(handle);
+  }
+  /** Calls a function that returns a text. */
+  readText(name, ...values) { return this.text(this.#trapped(name, values)); }
 
   /**
-   * Calls `body` with what lets go of memory at its end, `keep(address)`, the structs of `struct()` and copies of texts
-   * of `text()`; `run()`: a tsr_run of options.
+   * Calls `body` with what lets go of memory at its end, `keep(address)`, the structs of `struct()` and copies of
+   * `text()` and of typed arrays, `numbers()`; `run()`: a tsr_run of options.
    */
   scratch(body) {
-    const kept = [];
+    this.#check();
+    const kept = [], outer = this.#run;
     const keep = (at) => (kept.push(at), at);
     const struct = (name, defaults) => {
       const made = this.struct(name, defaults);
@@ -122,57 +150,60 @@ export class Module {
       return body({
         keep, struct,
         text: (of) => keep(this.copy(encoder.encode(of))),
-        numbers: (of, Type = Float64Array) => keep(this.numbers(of, Type)),
+        numbers: (list) => keep(this.numbers(list)),
         run: (options) => this.#runOf(options, struct, keep),
       });
     } finally {
-      this.#run = null;
-      if (!this.#broken) this.free(...kept);
+      this.#run = outer;
+      this.free(...kept);
     }
   }
-  /** Copies a list of numbers. */
-  numbers(of, Type = Float64Array) {
-    const array = of instanceof Type ? of : Type.from(of);
-    const at = this.allocate(array.byteLength);
-    new Type(this.exports.memory.buffer, at, array.length).set(array);
-    return at;
-  }
 
-  #runOf(options, struct, keep) {
-    if (!options?.progress) return 0;
-    if (typeof options.progress !== 'function') throw invalid('progress: expected a function');
+  #runOf({ progress, signal }, struct, keep) {
+    if (progress !== undefined && typeof progress !== 'function') throw invalid('progress: expected a function');
+    if (signal !== undefined && typeof signal?.aborted !== 'boolean') throw invalid('signal: expected an AbortSignal');
+    if (signal?.aborted) throw new TesseraError('cancelled', 'cancelled by the caller');
+    if (!progress && !signal) return 0;
     const run = struct('tsr_run'), cancel = keep(this.allocate(1));
     this.view.setUint8(cancel, 0);
     this.set(run, 'threads', 1);
     this.set(run, 'cancel', cancel);
     this.set(run, 'progress', this.exports.tessera_progress());
-    this.#run = { progress: options.progress, cancel, error: null };
+    this.#run = { progress, signal, cancel, failure: null };
     return run.at;
   }
-  // An exception must not run through the module's frames: it ends the call, and is thrown behind it.
-  #progress(share) {
+  #progress(share) { this.#ask((run) => run.progress?.(share) !== false); }
+  #poll() {
+    if (this.#run?.signal) this.#ask((run) => !run.signal.aborted);
+  }
+  // Ends the call that runs unless `goesOn` is true. An exception must not run through the module's frames: it ends the
+  // call, and is thrown behind it.
+  #ask(goesOn) {
     const run = this.#run;
-    if (!run || run.error) return;
+    if (!run || run.failure) return;
     try {
-      if (run.progress(share) === false) this.view.setUint8(run.cancel, 1);
+      if (goesOn(run)) return;
     } catch (error) {
-      run.error = error;
-      this.view.setUint8(run.cancel, 1);
+      run.failure = { error };
     }
+    this.view.setUint8(run.cancel, 1);
   }
 
-  /** Calls the module; a trap leaves its memory in no known state, and every later call is an error. */
-  #trapped(body) {
+  #check() {
     if (this.#broken) throw this.#broken;
-    if (this.#run?.isBusy) throw new TesseraError('in_use', 'progress() must not call the module that calls it');
+    if (this.#isBusy) throw new TesseraError('in_use', 'progress() must not use the instance that calls it');
+  }
+  /** Calls the module; a trap leaves its memory in no known state, and every later call is an error. */
+  #trapped(name, values) {
+    this.#check();
     try {
-      if (this.#run) this.#run.isBusy = true;
-      return body();
+      this.#isBusy = true;
+      return this.exports[name](...values);
     } catch (error) {
       this.#broken = new TesseraError('internal', `the module stopped and cannot be used any more: ${error.message}`);
       throw this.#broken;
     } finally {
-      if (this.#run) this.#run.isBusy = false;
+      this.#isBusy = false;
     }
   }
 }

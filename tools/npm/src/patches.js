@@ -1,11 +1,12 @@
 // Patch sets: Bezier patches of a model, packed for meshes, rays and points.
+import { flagsOf, listOf, namesOf, optionsOf, recordsOf, setNumbers, wholeOf } from './arguments.js';
 import { invalid } from './errors.js';
-import { Handle, checkNames, describe, flagsOf, recordsOf, setNumbers } from './handle.js';
-import { wholeOf } from './model.js';
+import { Handle, adopted, describe } from './handle.js';
+import { its } from './internal.js';
 import { Plan } from './plan.js';
 import { Scene } from './rays.js';
 
-const setNames = ['shape', 'whole', 'double', 'points', 'fitTolerance', 'progress'];
+const setNames = ['shape', 'whole', 'double', 'points', 'fitTolerance', 'progress', 'signal'];
 // Quantities of points and their components.
 const quantities = {
   position: 3, du: 3, dv: 3, duu: 3, duv: 3, dvv: 3, normal: 3, firstForm: 3, secondForm: 3, gaussian: 1, mean: 1,
@@ -17,27 +18,29 @@ export class Patches extends Handle {
   #surfaces = null;
 
   constructor(model, handle) {
-    super(model.module, handle);
-    this.#describe();
+    super(model[its.module], handle);
+    Object.defineProperty(this, 'model', { value: model });
+    this[its.refresh]();
   }
 
   static make(model, options) {
-    checkNames('patches', options, setNames);
-    const { module } = model, { TSR_SET_WHOLE, TSR_SET_DOUBLE, TSR_SET_POINTS } = module.constants;
+    const given = optionsOf('patches', options, setNames);
+    const module = model[its.module], { TSR_SET_WHOLE, TSR_SET_DOUBLE, TSR_SET_POINTS } = module.constants;
     return module.scratch(({ struct, run }) => {
       const wanted = struct('tsr_set_options', 'tsr_set_defaults');
-      if (options.shape !== undefined) module.set(wanted, 'shape', wholeOf('shape', options.shape));
-      setNumbers(module, wanted, options, { fitTolerance: 'fit_tolerance' });
+      if (given.shape !== undefined) module.set(wanted, 'shape', wholeOf('shape', given.shape));
+      setNumbers(module, wanted, given, { fitTolerance: 'fit_tolerance' });
       module.set(wanted, 'flags',
-        flagsOf(options, { whole: TSR_SET_WHOLE, double: TSR_SET_DOUBLE, points: TSR_SET_POINTS }));
-      return new Patches(model, module.make('tsr_set_new', model.handle, wanted.at, run(options)));
+        flagsOf(given, { whole: TSR_SET_WHOLE, double: TSR_SET_DOUBLE, points: TSR_SET_POINTS }));
+      const made = module.make('tsr_set_new', model[its.handle], wanted.at, run(given));
+      return adopted(module, made, () => new Patches(model, made));
     });
   }
 
-  #describe() {
-    const { low, high, unusedLoops, fitError, ...rest } = describe(this.module, 'tsr_set_describe', 'tsr_set_info',
+  [its.refresh]() {
+    const { low, high, unusedLoops, fitError, ...rest } = describe(this[its.module], 'tsr_set_describe', 'tsr_set_info',
       ['patches', 'surfaces', 'cut_patches', 'memory_bytes', 'revision', 'low', 'high', 'origin', 'fit_error',
-        'unused_loops'], this.handle);
+        'unused_loops'], this[its.handle]);
     Object.assign(this, {
       count: rest.patches, surfaceCount: rest.surfaces, cutCount: rest.cutPatches, memoryBytes: rest.memoryBytes,
       revision: rest.revision, origin: rest.origin, box: { low, high }, fitError, unusedLoops,
@@ -47,7 +50,7 @@ export class Patches extends Handle {
   /** The surface of each patch. */
   get surfaces() {
     if (this.#surfaces) return this.#surfaces;
-    const { module, handle } = this, found = new Uint32Array(this.count);
+    const module = this[its.module], handle = this[its.handle], found = new Uint32Array(this.count);
     module.scratch(({ struct }) => {
       const info = struct('tsr_patch_info');
       for (let k = 0; k < found.length; ++k) {
@@ -59,7 +62,7 @@ export class Patches extends Handle {
   }
 
   patch(index) {
-    const { module, handle } = this;
+    const module = this[its.module], handle = this[its.handle];
     return module.scratch(({ keep, struct }) => {
       const info = struct('tsr_patch_info');
       module.call('tsr_set_patch', handle, wholeOf('patch', index), info.at, 0, 0);
@@ -77,23 +80,26 @@ export class Patches extends Handle {
   }
 
   edit(patches, points) {
-    recordsOf('points', points, 3);
-    this.module.scratch(({ numbers }) => this.module.call('tsr_set_edit', this.handle, numbers(patches, Uint32Array),
-      patches.length, numbers(points), points.length / 3));
-    this.#describe();
+    const which = listOf('patches', patches, Uint32Array), where = listOf('points', points);
+    const count = recordsOf('points', where, 3), module = this[its.module];
+    try {
+      module.scratch(({ numbers }) => module.call('tsr_set_edit', this[its.handle], numbers(which), which.length,
+        numbers(where), count));
+    } finally {
+      if (!this.isDisposed && !module.isBroken) this[its.refresh]();  // after an error some are set
+    }
   }
 
-  plan(options = {}) { return Plan.make(this, options); }
-  rays(options = {}) { return Scene.make(this, options); }
+  plan(options) { return Plan.make(this, options); }
+  rays(options) { return Scene.make(this, options); }
 
-  evaluate(surface, u, v, wanted = ['position', 'normal']) {
-    const one = (list) => (typeof list === 'number' ? [list] : list);
-    const [us, vs] = [one(u), one(v)], count = recordsOf('u', us, 1);
+  evaluate(surface, u, v, names = ['position', 'normal']) {
+    const one = (what, list) => listOf(what, typeof list === 'number' ? [list] : list);
+    const us = one('u', u), vs = one('v', v), count = us.length, wanted = namesOf('evaluate', names, quantities);
     if (vs.length !== count) throw invalid(`v: expected ${count} numbers, as u has, found ${vs.length}`);
-    const surfaces = typeof surface === 'number' ? new Uint32Array(count).fill(wholeOf('surface', surface)) : surface;
-    for (const name of wanted)
-      if (!quantities[name]) throw invalid(`${name} is no quantity; there are ${Object.keys(quantities).join(', ')}`);
-    const { module } = this;
+    const surfaces = typeof surface === 'number' ? new Uint32Array(count).fill(wholeOf('surface', surface))
+      : listOf('surface', surface, Uint32Array);
+    const module = this[its.module];
     return module.scratch(({ keep, struct, numbers }) => {
       const jets = struct('tsr_jets'), found = {};
       module.set(jets, 'is_double', 1);
@@ -108,7 +114,7 @@ export class Patches extends Handle {
         module.set(jets, `${inSnakeCase(name)}.data`, found[name]);
         module.set(jets, `${inSnakeCase(name)}.count`, count);
       }
-      module.call('tsr_set_evaluate', this.handle, list(numbers(surfaces, Uint32Array), surfaces.length),
+      module.call('tsr_set_evaluate', this[its.handle], list(numbers(surfaces), surfaces.length),
         list(numbers(us), count), list(numbers(vs), count), jets.at, 0);
       return Object.fromEntries(wanted.map((name) => [name,
         new Float64Array(module.exports.memory.buffer, found[name], quantities[name] * count).slice()]));
