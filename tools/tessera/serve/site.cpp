@@ -39,12 +39,12 @@ const char* type_of(const fs::path& name) {
   return known == types.end() ? unknown_type : known->second;
 }
 
-/// What a page from here may do: its own scripts, workers and WebAssembly, and nothing of the network.
+/// What a page from here may do: its own scripts, workers and WebAssembly, and nothing of the network; as by
+/// tools/web/serve.mjs.
 std::string content_policy(const std::string& nonce) {
   return "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-" + nonce +
-         "'; worker-src 'self' blob:; connect-src 'self' blob: data:; style-src 'self' 'unsafe-inline'; "
-         "img-src 'self' blob: data:; font-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; "
-         "frame-ancestors 'none'";
+         "'; worker-src 'self'; connect-src 'self'; style-src 'self'; img-src 'self' blob:; base-uri 'none'; "
+         "form-action 'none'; frame-ancestors 'none'";
 }
 
 /// 128 random bits in hexadecimal digits.
