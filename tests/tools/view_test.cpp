@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "io/file/descriptor.h"
+#include "tools/run_in_terminal.h"
 #include "tools/tool_test.h"
 
 namespace tessera::test { namespace {
@@ -63,10 +64,10 @@ class View : public ToolTest {
     std::filesystem::create_directory_symlink("..", folder_ / "web/up");
   }
 
-  /// Starts the command; its output goes to a file. Returns the line that it prints.
+  /// Starts the command; its output goes to files. Returns the line that it prints.
   std::string start(Names words, const std::vector<std::string>& variables = {}) {
     std::filesystem::remove(folder_ / "said");
-    words.insert(words.begin(), {"sh", "-c", "exec \"$@\" >said", "sh", TESSERA_TOOL, "view"});
+    words.insert(words.begin(), {"sh", "-c", "exec \"$@\" >said 2>faults", "sh", program_, "view"});
     tool_ = std::make_unique<RunningProgram>(folder_, words, variables);
     for (int k = 0; k < 2000; ++k) {
       std::this_thread::sleep_for(10ms);
@@ -74,8 +75,13 @@ class View : public ToolTest {
       const std::string said = content_of(folder_ / "said");
       if (said.ends_with('\n')) return said.substr(0, said.size() - 1);
     }
-    ADD_FAILURE() << "nothing is said: " << tool_->wait().errors;
+    ADD_FAILURE() << "nothing is said: " << content_of(folder_ / "faults");
     return "";
+  }
+  /// What is on standard error, once there is something.
+  std::string fault() const {
+    for (int k = 0; k < 2000 && content_of(folder_ / "faults").empty(); ++k) std::this_thread::sleep_for(10ms);
+    return content_of(folder_ / "faults");
   }
   void serve(const Names& words) {
     address_ = start(words);
@@ -83,9 +89,9 @@ class View : public ToolTest {
     port_ = std::stoi(address_.substr(begin));
     host_ = "127.0.0.1:" + std::to_string(port_);
   }
-  ToolRun interrupt() {
+  int interrupt() {
     tool_->signal(SIGINT);
-    return tool_->wait();
+    return tool_->wait().status;
   }
 
   std::string raw(const std::string& bytes) const {
@@ -100,7 +106,7 @@ class View : public ToolTest {
   static std::string body_of(const std::string& response) { return response.substr(response.find("\r\n\r\n") + 4); }
 
   const std::string page_ = "<!doctype html><title>fake</title>";
-  std::string address_, host_;
+  std::string program_ = TESSERA_TOOL, address_, host_;
   int port_ = 0;
   std::unique_ptr<RunningProgram> tool_;
 };
@@ -114,9 +120,8 @@ TEST_F(View, ServesThePageAndTheModelUntilItIsInterrupted) {
     EXPECT_EQ(body_of(ask("/model/teapot.bpt")), content_of(teapot));
     const Connection idle(port_);  // occupies a worker
     tool_->signal(signal);
-    const ToolRun end = tool_->wait();
-    EXPECT_EQ(end.status, 128 + signal);
-    EXPECT_EQ(end.errors, "");
+    EXPECT_EQ(tool_->wait().status, 128 + signal);
+    EXPECT_EQ(content_of(folder_ / "faults"), "");
   }
 }
 
@@ -236,19 +241,27 @@ TEST_F(View, OpensTheBrowserAndGoesOnWithoutOne) {
   const std::string address = start({teapot, "--web", "web"}, {path});
   for (int k = 0; k < 1000 && !std::filesystem::exists(folder_ / "opened"); ++k) std::this_thread::sleep_for(10ms);
   EXPECT_EQ(content_of(folder_ / "opened"), address);
-  std::this_thread::sleep_for(300ms);
-  const ToolRun failed = interrupt();
-  EXPECT_EQ(failed.status, 128 + SIGINT);
-  EXPECT_EQ(failed.errors, "tessera: warning: no browser is opened: xdg-open ended with 3; open the address above\n");
+  EXPECT_EQ(fault(), "tessera: warning: no browser is opened: xdg-open ended with 3; open the address above\n");
+  EXPECT_EQ(interrupt(), 128 + SIGINT);
 
   std::filesystem::create_directory(folder_ / "bin");
   for (const char* const program : {"sh", "env"})
     std::filesystem::create_symlink(std::string("/usr/bin/") + program, folder_.path() / "bin" / program);
   start({teapot, "--web", "web"}, {"PATH=" + (folder_ / "bin")});
-  std::this_thread::sleep_for(300ms);
-  const ToolRun missing = interrupt();
-  EXPECT_EQ(missing.status, 128 + SIGINT);
-  EXPECT_THAT(missing.errors, StartsWith("tessera: warning: no browser is opened: xdg-open cannot be started: "));
+  EXPECT_THAT(fault(), StartsWith("tessera: warning: no browser is opened: xdg-open cannot be started: "));
+  EXPECT_EQ(interrupt(), 128 + SIGINT);
+}
+
+TEST_F(View, TerminalsAreToldHowItEnds) {
+  if (!has_pseudo_terminals()) GTEST_SKIP() << "there are no pseudo-terminals";
+  folder_.file("xdg-open", "#!/bin/sh\nkill -INT $PPID\n");
+  std::filesystem::permissions(folder_ / "xdg-open", std::filesystem::perms::owner_all);
+  TerminalKind kind;
+  kind.variables.push_back("PATH=" + folder_.path().string() + ":/usr/bin:/bin");
+  const TerminalRun run = run_in_terminal(folder_, {"view", teapot, "--web", "web"}, kind);
+  EXPECT_EQ(run.status, 128 + SIGINT) << run.screen;
+  EXPECT_THAT(run.screen,
+              testing::MatchesRegex("http://127.0.0.1:[0-9]+/.model=/model/teapot.bpt\r\nserving until Ctrl-C\r\n"));
 }
 
 TEST_F(View, SaysWhatItServesAsJson) {
@@ -285,17 +298,13 @@ TEST_F(View, WrongCommandsAreErrors) {
 TEST_F(View, ThePageIsFoundBesideTheInstalledProgram) {
   std::filesystem::create_directories(folder_ / "usr/bin");
   std::filesystem::create_directories(folder_ / "usr/share/tessera");
-  std::filesystem::copy(TESSERA_TOOL, folder_ / "usr/bin/tessera");
-  const auto run_installed = [&] {
-    return RunningProgram(folder_,
-                          {"timeout", "-s", "INT", "1", folder_ / "usr/bin/tessera", "view", teapot, "--no-browser"})
-        .wait();
-  };
-  const ToolRun without = run_installed();
+  program_ = folder_ / "usr/bin/tessera";
+  std::filesystem::copy(TESSERA_TOOL, program_);
+  const ToolRun without = run_program(folder_, {program_, "view", teapot, "--no-browser"}, {"TESSERA_WEB="});
   EXPECT_EQ(without.status, 1);
   EXPECT_THAT(without.errors, HasSubstr("neither " + (folder_ / "usr/share/tessera/web") + " nor "));
   std::filesystem::rename(folder_ / "web", folder_ / "usr/share/tessera/web");
-  EXPECT_THAT(run_installed().output, StartsWith("http://127.0.0.1:"));
+  EXPECT_THAT(start({teapot, "--no-browser"}, {"TESSERA_WEB="}), StartsWith("http://127.0.0.1:"));
 }
 
 #ifdef TESSERA_HAS_CAD_READER
@@ -308,7 +317,7 @@ TEST_F(View, FilesOfOpenCascadeAreConverted) {
   const json facts = json::parse(output_of({"info", "shown.json", "--json"}));
   EXPECT_GT(facts["surfaces"], 10);
   EXPECT_GT(facts["trimmed_surfaces"], 0);
-  EXPECT_THAT(interrupt().errors, HasSubstr("without unit, colours, parts and common edges"));
+  EXPECT_THAT(fault(), HasSubstr("without unit, colours, parts and common edges"));
 }
 #endif
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "commands/commands.h"
+#include "console/terminal.h"
 #include "io/format/output_formats.h"
 #include "line/arguments.h"
 #include "serve/browser.h"
@@ -93,7 +94,7 @@ Status run_view(const Job& job, const ViewOptions& options, const CommonOptions&
   report.add("shown", shown);
   report.add("web", web->string());
   report.add("port", server->port());
-  report.add("address", address, address);
+  report.add("address", address, address + (output_is_terminal() ? "\nserving until Ctrl-C" : ""));
   if (Status status = report.print({}, common, timings); !status.ok()) return status;
   std::optional<BrowserStart> browser;
   if (!options.no_browser) browser.emplace(address);
