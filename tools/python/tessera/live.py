@@ -119,7 +119,9 @@ def _package() -> pathlib.Path:
     in the source tree the one that is built."""
     named = os.environ.get("TESSERA_NPM")
     here = pathlib.Path(__file__).resolve().parent
-    places = [pathlib.Path(named)] if named else [here / "npm", here.parents[2] / "build" / "wasm" / "npm"]
+    places = [pathlib.Path(named)] if named else [here / "npm"]
+    if not named and (here.parents[2] / "engine" / "include").is_dir():
+        places.append(here.parents[2] / "build" / "wasm" / "npm")
     for place in places:
         if (place / "tessera.wasm").is_file() and (place / "index.js").is_file():
             return place
