@@ -22,6 +22,8 @@
 #   Python            python3 3.11                tools/perf and its tests, its standard library alone; skipped without
 #   PyYAML            python3-yaml 6.0            the test of the recipe in tools/performance/template; skipped without
 #   mypy              mypy 1.0                    the test of the types of the package for Python; skipped without
+#   Chromium          chromium                    the tests of views of notebooks and of the page; skipped without
+#   xdg-open          xdg-utils 1.1               tessera view, when it runs: opens the browser; without it the address is printed
 #   librsvg           librsvg2-bin 2.54           tools/perf report: plots as PNG; left out without
 #   a cross compiler  g++-aarch64-linux-gnu 12.2  the test of the NEON kernels, with qemu-user 7.2; skipped without
 #   ImageMagick       imagemagick 6.9             tools/gallery.sh alone: pictures on one sheet

@@ -33,7 +33,11 @@ function(tessera_install_python)
   endif()
   if(TESSERA_PYTHON_DIR)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/tessera DESTINATION ${TESSERA_PYTHON_DIR} COMPONENT python3-tessera
-      FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "__pycache__" EXCLUDE)
+      FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "live.js" PATTERN "__pycache__" EXCLUDE)
+    # What live views need, where it is built (target tessera_npm of the preset "wasm").
+    install(DIRECTORY ${TESSERA_NPM_FOLDER}/ DESTINATION ${TESSERA_PYTHON_DIR}/tessera/npm COMPONENT python3-tessera OPTIONAL
+      FILES_MATCHING PATTERN "*.js" PATTERN "package.json" PATTERN "LICENSE" PATTERN "tessera.wasm"
+      PATTERN "three" EXCLUDE PATTERN "worker" EXCLUDE PATTERN "node_modules" EXCLUDE)
     set(info ${PROJECT_BINARY_DIR}/python/tessera-${PROJECT_VERSION}.dist-info)
     string(JOIN "\n" metadata "Metadata-Version: 2.1" "Name: tessera" "Version: ${PROJECT_VERSION}"
       "Summary: ${PROJECT_DESCRIPTION}" "Requires-Python: >=3.9" "Requires-Dist: numpy>=1.22" "")
@@ -42,6 +46,12 @@ function(tessera_install_python)
     install(DIRECTORY ${info} DESTINATION ${TESSERA_PYTHON_DIR} COMPONENT python3-tessera)
   endif()
 endfunction()
+
+# What the preset "wasm" makes, by the targets tessera_web and tessera_npm: looked for at the installation.
+set(TESSERA_WEB_FOLDER ${PROJECT_SOURCE_DIR}/build/wasm/web CACHE STRING
+  "The page of tessera view, which is installed if it is there")
+set(TESSERA_NPM_FOLDER ${PROJECT_SOURCE_DIR}/build/wasm/npm CACHE STRING
+  "tessera.wasm with its scripts, which is installed with the package for Python if it is there")
 
 # The headers of a component that is not built stay out.
 set(left_out)
@@ -118,6 +128,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/tools/models/FORMAT.md ${PROJECT_SOURCE_DIR}
 if(TESSERA_BUILD_TOOLS)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/tessera/JSON.md DESTINATION ${doc_dir})
   install(TARGETS tessera_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${TESSERA_WEB_FOLDER}/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/tessera/web OPTIONAL)
   if(TESSERA_HAS_MPI)
     install(TARGETS tessera_mpi_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()

@@ -51,7 +51,7 @@ if(TESSERA_HAS_EMBREE)
 endif()
 tessera_package(libtessera-dev libdevel "The headers, with files for CMake and pkg-config."
   DEPENDS ${same} libtbb-dev ${embree_package} libmuparser-dev libmeshoptimizer-dev zlib1g-dev SUGGESTS tessera)
-tessera_package(tessera graphics "The command line." RECOMMENDS tessera-cad-reader)
+tessera_package(tessera graphics "The command line." RECOMMENDS tessera-cad-reader SUGGESTS xdg-utils)
 tessera_package(tessera-cad-reader graphics "Reads IGES and BREP files, and STEP files on request, for Tessera's programs, by OpenCASCADE.")
 tessera_package(python3-tessera python "The package for Python: results as arrays of NumPy." ALL
   DEPENDS ${same} "python3 (>= 3.9)" python3-numpy SUGGESTS tessera-cad-reader)

@@ -14,6 +14,9 @@ out/packages
   *.tar.gz   all of these with the libraries that they need: runs wherever it is unpacked
   *.whl      the package for every Python from 3.9 on, with the libraries that it needs
 
+If build/wasm has them (cmake --preset wasm; targets tessera_web and tessera_npm), the packages hold the page of tessera view and
+what live views of notebooks need.
+
 The test "packages" (tools/test.sh -- -L packages) installs them and follows the README: in bare roots of Debian 12 if it
 runs as root, debootstrap is installed and the network is there.
 TEXT

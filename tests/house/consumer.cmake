@@ -76,7 +76,7 @@ endfunction()
 # check_texts(PREFIX): checks that each page that an installed header or text names is installed, and no source is named.
 function(check_texts prefix)
   file(GLOB_RECURSE texts ${prefix}/include/*.h ${prefix}/share/*)
-  list(FILTER texts EXCLUDE REGEX "\\.jpg$")
+  list(FILTER texts EXCLUDE REGEX "\\.jpg$|/share/tessera/web/")
   foreach(text IN LISTS texts)
     file(READ ${text} content)
     string(REGEX MATCHALL "[A-Za-z_./-]+\\.md" pages "${content}")

@@ -160,8 +160,8 @@ TEST(Engine, EveryIncludeStaysOnOrBelowItsFloor) {
 }
 
 /// Internal headers for the project's own programs, which no user needs.
-const Names headers_for_tools{"io/file/output_file.h", "io/file/text_cursor.h", "io/format/output_formats.h",
-                              "io/mesh/mesh_pieces.h", "mpi/mpi_ply.h"};
+const Names headers_for_tools{"io/file/descriptor.h",       "io/file/output_file.h", "io/file/text_cursor.h",
+                              "io/format/output_formats.h", "io/mesh/mesh_pieces.h", "mpi/mpi_ply.h"};
 
 /// The command line and the renderer are written as a user would write them, but for how they read and write files.
 TEST(Tools, IncludePublicHeadersAndThoseOfFiles) {

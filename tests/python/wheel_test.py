@@ -58,7 +58,7 @@ def test_one_wheel_for_every_python(site):
     (metadata,) = site.glob("tessera-*.dist-info")
     assert re.search(r"^Tag: py3-none-linux_\w+$", (metadata / "WHEEL").read_text(), re.M)
     package = {file.name for file in (site / "tessera").iterdir()}
-    assert {"__init__.py", "py.typed", "view.html", "lib"} <= package
+    assert {"__init__.py", "py.typed", "view.html", "live.js", "lib"} <= package
     assert not list((SOURCES / "tools/python").glob("*.egg-info")) and not (SOURCES / "tools/python/build").exists()
 
 

@@ -82,7 +82,7 @@ TEST_F(CommandLine, WhatIsNoCommandLineEndsWithTwo) {
   expect_failure(
       {}, 2,
       "expected a command (info, eval, tessellate, raycast, convert, project, section, check, compare, measure, "
-      "completion, man or "
+      "view, completion, man or "
       "help), found none");
   expect_failure({"paint"}, 2, "paint");
   expect_failure({"info"}, 2, "MODEL");

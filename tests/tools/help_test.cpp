@@ -10,8 +10,8 @@ namespace tessera::test { namespace {
 class Help : public ToolTest {
  protected:
   static const Names& commands() {
-    static const Names names{"info",  "eval",    "tessellate", "raycast",    "convert", "project", "section",
-                             "check", "compare", "measure",    "completion", "man",     "help"};
+    static const Names names{"info",  "eval",    "tessellate", "raycast", "convert",    "project", "section",
+                             "check", "compare", "measure",    "view",    "completion", "man",     "help"};
     return names;
   }
   /// The long options in a text.
@@ -42,8 +42,8 @@ TEST_F(Help, TheToolsHelpSuffices) {
 }
 
 TEST_F(Help, EveryOptionSaysWhatItTakesAndItsDefault) {
-  for (const std::string& command :
-       Names{"info", "eval", "tessellate", "raycast", "convert", "project", "section", "check", "compare", "measure"}) {
+  for (const std::string& command : Names{"info", "eval", "tessellate", "raycast", "convert", "project", "section",
+                                          "check", "compare", "measure", "view"}) {
     const std::set<std::string> options = options_of(command);
     for (const char* const common : {"--json", "--timings", "--threads", "--isa"})
       EXPECT_TRUE(options.count(common)) << command << ' ' << common;

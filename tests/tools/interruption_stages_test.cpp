@@ -124,9 +124,10 @@ TEST_F(InterruptedStages, ReadersOfCadFilesThatDoNotEnd) {
   const std::string reader = folder_.file("reader", "#!/bin/sh\ntrap '' TERM INT HUP\nwhile :; do sleep 0.1; done\n");
   std::filesystem::permissions(reader, std::filesystem::perms::owner_all);
   folder_.file("part.igs", "ISO-10303-21;\n");
-  for (const Words& command :
-       {Words{"info", "part.igs"}, Words{"tessellate", "part.igs", "-o", "a.glb"},
-        Words{"convert", "part.igs", "-o", "a.json"}, Words{"raycast", "part.igs", "-o", "a.png"}})
+  folder_.file("index.html", "");  // the page of view
+  for (const Words& command : {Words{"info", "part.igs"}, Words{"tessellate", "part.igs", "-o", "a.glb"},
+                               Words{"convert", "part.igs", "-o", "a.json"},
+                               Words{"raycast", "part.igs", "-o", "a.png"}, Words{"view", "part.igs", "--web", "."}})
     expect_end(command, 300ms, {"TESSERA_CAD_READER=" + reader});
 }
 

@@ -1,9 +1,11 @@
 // Tests the page in Chromium:  node page.mjs BROWSER PAGE [NATIVE-TESSERA]
 import assert from 'node:assert/strict';
 import { launch, serve } from './browser.mjs';
-import { cases } from './cases.mjs';
+import { cases as casesOfPage } from './cases.mjs';
+import { nativeCases } from './native_cases.mjs';
 
 const [executable, folder, native] = process.argv.slice(2);
+const cases = { ...casesOfPage, ...nativeCases };
 const browser = await launch(executable);
 const server = await serve(folder);
 let failed = 0;

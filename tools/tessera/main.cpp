@@ -26,6 +26,7 @@ void add_commands(Command& tool, Session& session) {
   add_check(tool, session);
   add_compare(tool, session);
   add_measure(tool, session);
+  add_view(tool, session);
   add_completion(tool, session);
   add_man(tool, session);
   add_help(tool, session);

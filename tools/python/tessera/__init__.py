@@ -22,6 +22,7 @@ from .errors import (
     UnsupportedError,
 )
 from .jets import Jets
+from .live import LiveView
 from .limits import Limits, Measurement, limits, measure
 from .measures import Area, Body, Box, Measures
 from .meshes import Mesh, MeshReport
@@ -56,6 +57,7 @@ __all__ = [
     "Instance",
     "Jets",
     "Limits",
+    "LiveView",
     "Measurement",
     "Measures",
     "Mesh",

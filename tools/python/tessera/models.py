@@ -14,6 +14,7 @@ from ._arrays import index_of, positive_of
 from ._calls import Handle, call
 from ._library import library, struct
 from .jets import Jets, evaluate_surface
+from .live import ModelFile, WithLiveView
 from .measures import Measures
 from .meshes import Mesh, mesh_for_view, warn_of_rounding
 from .patches import PatchSetBase
@@ -97,7 +98,7 @@ class Surface(SurfaceBase, Shown):
         return f"<Surface {self.name!r}, {self.kind} on [{u0:g}, {u1:g}] x [{v0:g}, {v1:g}]{loops}>"
 
 
-class Model(Handle, Shown):
+class Model(Handle, WithLiveView):
     """Surfaces, in the order of their file. ``model["name"]`` and ``model[index]`` return one.
 
     >>> import tessera as ts
@@ -112,10 +113,11 @@ class Model(Handle, Shown):
         handle: ctypes.c_void_p,
         made_by: Callable[[], tuple[Any, ...]],
         splines: Sequence[Spline] | None = None,
+        file: Callable[[], ModelFile] | None = None,
     ) -> None:
         """``made_by`` returns a function and arguments that make the model again, for pickle; ``splines`` are its
-        surfaces, if it was made of them."""
-        self._handle, self._made_by, self._splines = handle, made_by, splines
+        surfaces, if it was made of them; ``file`` returns the file that it was read from, if there is one."""
+        self._handle, self._made_by, self._splines, self._file = handle, made_by, splines, file
         self._point_set: PatchSet | None = None
         self._bounds: np.ndarray | None = None
 
@@ -200,7 +202,7 @@ class Model(Handle, Shown):
         handle = ctypes.c_void_p()
         distance = positive_of("distance", distance, zero=True)
         call(library.tsr_model_join, ctypes.byref(handle), self._handle, distance)
-        return Model(handle, lambda: (Model.join, (self, distance)))
+        return Model(handle, lambda: (Model.join, (self, distance)), file=lambda: self._readable_file().joined(distance))
 
     def patches(
         self,

@@ -13,6 +13,7 @@ from ._calls import call, run
 from ._library import library, struct
 from ._nets import MAX_DEGREE
 from .errors import ArgumentError, ArgumentTypeError, FileError
+from .live import ModelFile
 from .models import Model, Surface
 from .splines import Spline, knots_pair
 
@@ -83,7 +84,11 @@ def read(
         stamp = (0, 0)  # the library says what is wrong
     handle, given = ctypes.c_void_p(), _read_options(*options)
     run(library.tsr_model_read_file, ctypes.byref(handle), os.fsencode(name), ctypes.byref(given), makes=handle)
-    return Model(handle, lambda: (_read_bytes, (name, _unchanged(name, stamp), options)))
+    return Model(
+        handle,
+        lambda: (_read_bytes, (name, _unchanged(name, stamp), options)),
+        file=lambda: ModelFile(os.path.basename(name), _unchanged(name, stamp), format),
+    )
 
 
 def _read_stream(source: Any, options: tuple[str | None, str | None]) -> Model:
@@ -133,14 +138,18 @@ def _read_bytes(name: str, content: bytes, options: tuple[str | None, str | None
         ctypes.byref(given),
         makes=handle,
     )
-    return Model(handle, lambda: (_read_bytes, (name, content, options)))
+    return Model(
+        handle,
+        lambda: (_read_bytes, (name, content, options)),
+        file=lambda: ModelFile(os.path.basename(name), content, options[0]),
+    )
 
 
 def parse(text: str, name: str = "text") -> Model:
     """Reads the text of a JSON file, which has surfaces of every kind; ``name`` stands for the file in messages."""
     handle, content = ctypes.c_void_p(), text.encode()
     call(library.tsr_model_parse, ctypes.byref(handle), content, len(content), os.fsencode(name))
-    return Model(handle, lambda: (parse, (text, name)))
+    return Model(handle, lambda: (parse, (text, name)), file=lambda: ModelFile(name, content, "json"))
 
 
 def model(*surfaces: Spline | Surface | Model) -> Model:

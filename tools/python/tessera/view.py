@@ -33,26 +33,11 @@ class Shown:
         return {"text/plain": repr(self), "text/html": html, "image/png": base64.b64encode(png).decode()}
 
 
-def view_of(
-    name: str, vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None, note: str = ""
-) -> tuple[str, bytes]:
-    """Returns HTML that shows triangles, at most 2 MB, and their picture as PNG. ``name``: what is shown, within
-    brackets.
-
-    The picture lies behind the frame with the scripts, so that it is seen where the frame is taken out or where its
-    scripts do not run.
-    """
+def frame_of(page: str, name: str, png: bytes) -> str:
+    """Returns HTML that shows a page in a frame without an origin, and behind it a picture, which is seen where the
+    frame is taken out or where its scripts do not run."""
     import html  # here, so that the package is imported sooner
-    import json
 
-    if len(faces) > MAX_TRIANGLES:
-        vertices, faces, normals = *_clustered(vertices, faces), None
-        note = f"; shown simplified, with {len(faces):,} triangles"
-    normals = _normals(vertices, faces) if normals is None else normals
-    data = _data_of(vertices, faces, normals)
-    png = picture_of(vertices, faces, normals)
-    template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
-    page = template.replace("@CAPTION@", html.escape(name[1:-1] + note)).replace("@DATA@", json.dumps(data))
     place = "position: absolute; left: 0; top: 0; width: 100%; height: 100%; border: 0"
     return (
         '<div style="position: relative; height: 420px; border: 1px solid #ddd; background: #fff">'
@@ -60,7 +45,33 @@ def view_of(
         f'style="{place}; object-fit: contain">'
         f'<iframe srcdoc="{html.escape(page)}" sandbox="allow-scripts" title="{html.escape(name)}" style="{place}">'
         "</iframe></div>"
-    ), png
+    )
+
+
+def page_of(caption: str, data: dict[str, Any], script: str) -> str:
+    """Returns a page that shows the meshes of a source, which ``script`` makes of ``data``."""
+    import html
+    import json
+
+    template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
+    text = json.dumps(data).replace("<", "\\u003c")  # no name ends the script
+    for mark, value in (("@CAPTION@", html.escape(caption)), ("@LIVE@", script), ("@DATA@", text)):
+        template = template.replace(mark, value, 1)
+    return template
+
+
+def view_of(
+    name: str, vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None, note: str = ""
+) -> tuple[str, bytes]:
+    """Returns HTML that shows triangles, at most 2 MB, and their picture as PNG. ``name``: what is shown, within
+    brackets."""
+    if len(faces) > MAX_TRIANGLES:
+        vertices, faces, normals = *_clustered(vertices, faces), None
+        note = f"; shown simplified, with {len(faces):,} triangles"
+    normals = _normals(vertices, faces) if normals is None else normals
+    data = _data_of(vertices, faces, normals)
+    png = picture_of(vertices, faces, normals)
+    return frame_of(page_of(name[1:-1] + note, data, "showInSight(stored());"), name, png), png
 
 
 def _data_of(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray) -> dict[str, Any]:

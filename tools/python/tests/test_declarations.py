@@ -39,7 +39,7 @@ def test_structs_are_those_of_the_header(header, sources, tmp_path):
     if compiler is None:
         pytest.skip("there is no C compiler")
     assert set(re.findall(r"^} (tsr_\w+);", header, re.M)) == set(_library._STRUCTS)
-    lines = [f'#include "tessera/tessera_c_{name}.h"' for name in ("files", "queries")]
+    lines = [f'#include "tessera/tessera_c_{name}.h"' for name in ("files", "shapes", "queries")]
     for name in _library._STRUCTS:
         made = _library._TYPES[name]
         lines.append(f"_Static_assert(sizeof({name}) == {ctypes.sizeof(made)}, \"{name}\");")

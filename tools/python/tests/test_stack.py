@@ -11,6 +11,7 @@ STACK = {
     "errors": "exceptions",
     "_picture": "triangles as PNG",
     "view": "triangles as HTML",
+    "live": "a view that makes its own triangles, as HTML with tessera.wasm",
     "_library": "the C library, its structs and functions",
     "_arrays": "arrays of NumPy as the library takes them",
     "_nets": "control nets of splines: knots, degrees, interpolation",

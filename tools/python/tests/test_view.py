@@ -1,18 +1,24 @@
 """The view of notebooks: what it holds, and its size."""
 
 import base64
+import gzip
 import html
 import html.parser
 import json
+import os
+import pathlib
 import re
 import struct
+import time
 import zlib
 
 import numpy as np
 import pytest
 
+import browser
 import tessera as ts
 from conftest import wavy
+from tessera import live
 
 
 def data_of(text):
@@ -144,9 +150,32 @@ def pixels_of(png):
         body += data if kind == b"IDAT" else b""
         at += 12 + length
     assert (depth, colour) == (8, 2)
-    lines = np.frombuffer(zlib.decompress(body), np.uint8).reshape(height, 1 + 3 * width)
-    assert (lines[:, 0] == 1).all()  # each row by differences from the left
-    return np.cumsum(lines[:, 1:].reshape(height, width, 3), axis=1, dtype=np.uint8)
+    return unfiltered(np.frombuffer(zlib.decompress(body), np.uint8).reshape(height, 1 + 3 * width))
+
+
+def unfiltered(lines):
+    """The pixels [row][column][3] of the lines of a PNG, by its five filters (RFC 2083, 6)."""
+    above = np.zeros((lines.shape[1] // 3, 3), np.int64)
+    rows = []
+    for line in lines:
+        row = line[1:].reshape(-1, 3).astype(np.int64)
+        if line[0] == 1:
+            row = np.cumsum(row, axis=0)
+        elif line[0] == 2:
+            row += above
+        elif line[0] > 2:
+            left, corner = np.zeros(3, np.int64), np.zeros(3, np.int64)
+            for column, up in enumerate(above):
+                guess = (left + up) // 2
+                if line[0] == 4:
+                    to_left, to_up, to_corner = (np.abs(left + up - corner - each) for each in (left, up, corner))
+                    guess = np.where((to_left <= to_up) & (to_left <= to_corner), left, corner)
+                    guess = np.where((to_up < to_left) & (to_up <= to_corner), up, guess)
+                row[column] = left = (row[column] + guess) & 255
+                corner = up
+        above = row & 255
+        rows.append(above)
+    return np.array(rows, np.uint8)
 
 
 def test_a_picture_shows_a_sphere():
@@ -199,3 +228,108 @@ def test_notebooks_get_both(goblet):
         png = base64.b64decode(bundle["image/png"])
         assert png == shown._repr_png_() and 2_000 < len(png) < 60_000
         assert bundle["image/png"] in bundle["text/html"]
+
+
+def live_data_of(text):
+    page = html.unescape(re.search(r'srcdoc="([^"]*)"', text)[1])
+    return json.loads(re.search(r"const data = (\{.*\});", page)[1])
+
+
+def unpacked(text):
+    return gzip.decompress(base64.b64decode(text))
+
+
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """A package for JavaScript that is no more than its names."""
+    (tmp_path / "src").mkdir()
+    (tmp_path / "tessera.wasm").write_bytes(b"\0asm")
+    (tmp_path / "index.js").write_text("import { a } from './src/a.js';\nexport { a };\n")
+    (tmp_path / "src/a.js").write_text("import '../index.js';\nexport { b as a } from \"./b.js\";\n")
+    (tmp_path / "src/b.js").write_text("export const b = 'from ./c.js';\n")
+    (tmp_path / "src/unused.js").write_text("let c;\n")
+    monkeypatch.setenv("TESSERA_NPM", str(tmp_path))
+    live.packed_module.cache_clear()
+    yield tmp_path
+    live.packed_module.cache_clear()
+
+
+def test_a_live_view_holds_the_library_and_the_file(module, sources, tmp_path):
+    path = sources / "tools/models/bearing_block.step"
+    view = ts.read(path).view(live=True)
+    text, png = view._repr_html_(), view._repr_png_()
+    data = live_data_of(text)
+    assert unpacked(data["module"]) == b"\0asm" and data["name"] == "bearing_block.step" and data["join"] == []
+    assert unpacked(data["file"]) == path.read_bytes()
+    scripts = json.loads(unpacked(data["scripts"]))
+    assert scripts.keys() == {"index.js", "src/a.js", "src/b.js"}
+    assert scripts["index.js"].startswith("import { a } from 'tessera/src/a.js';")
+    assert scripts["src/a.js"] == "import 'tessera/index.js';\nexport { b as a } from \"tessera/src/b.js\";\n"
+    assert pixels_of(png).min() < 200 and base64.b64encode(png).decode() in text
+    bundle = view._repr_mimebundle_()
+    assert bundle["text/html"] == text and bundle["image/png"] == base64.b64encode(png).decode()
+    assert bundle["text/plain"].startswith("<LiveView of Model 78 surfaces")
+    view.save(tmp_path / "block.html")
+    page = (tmp_path / "block.html").read_text(encoding="utf-8")
+    assert page.startswith("<!doctype html>") and html.escape(page) in text and "@" not in page.split("<script>")[0]
+
+
+def test_live_views_of_other_models(module, tmp_path):
+    joined = ts.sphere(name="</script><b>").join(0.25).join(0.5)
+    text = joined.view(live=True)._repr_html_()
+    data = live_data_of(text)
+    page = html.unescape(re.search(r'srcdoc="([^"]*)"', text)[1])
+    assert data["join"] == [0.25, 0.5] and page.count("</script>") == 1 and page.count("<b>") == 0
+    shown = ts.read(unpacked(data["file"]), format="json")
+    assert shown.names == ["</script><b>"] and np.allclose(shown.bounds, joined.bounds)
+    text = '{"format": "tessera", "version": 1, "surfaces": [{"kind": "sphere", "radius": 2}]}'
+    data = live_data_of(ts.parse(text, name="text").view(live=True)._repr_html_())
+    assert (data["name"], data["format"], unpacked(data["file"])) == ("text", "json", text.encode())
+    # A file that has changed is no longer the model's.
+    path = tmp_path / "ball.json"
+    path.write_text(text)
+    for change in (lambda: path.write_text(text + "\n"), path.unlink):
+        model = ts.read(path)
+        change()
+        data = live_data_of(model.view(live=True)._repr_html_())
+        assert data["name"] == "model.json" and len(ts.read(unpacked(data["file"]), format="json")) == 1
+
+
+def test_live_views_without_the_module_say_so(tmp_path, monkeypatch, goblet):
+    monkeypatch.setenv("TESSERA_NPM", str(tmp_path))
+    live.packed_module.cache_clear()
+    with pytest.raises(ts.UnsupportedError, match=r"needs tessera\.wasm.*cmake --preset wasm.*TESSERA_NPM"):
+        goblet.view(live=True)
+    assert goblet.view() is goblet
+
+
+PACKAGE = pathlib.Path(os.environ.get("TESSERA_NPM") or pathlib.Path(__file__).parents[3] / "build/wasm/npm")
+
+
+def shares_of(png):
+    """The shares of coloured pixels and of brass ones in a picture of a page."""
+    red, green, blue = pixels_of(png)[5:400].astype(int).transpose(2, 0, 1)
+    return (np.maximum(red, blue) - green > 15).mean(), (red > blue + 40).mean()
+
+
+@pytest.mark.skipif(browser.PROGRAM is None, reason="chromium is not installed")
+@pytest.mark.parametrize("is_live", [False, True])
+def test_a_browser_shows_the_view(sources, tmp_path, is_live):
+    if is_live and not (PACKAGE / "tessera.wasm").exists():
+        pytest.skip("tessera.wasm is not built")
+    live.packed_module.cache_clear()
+    view = ts.read(sources / "tools/models/bearing_block.step").view(live=is_live)
+    text = view._repr_html_().replace("<img ", "<img hidden ", 1)  # the frame alone
+    path = tmp_path / "view.html"
+    path.write_text("<!doctype html><body style='margin: 0'>" + text, encoding="utf-8")
+    with browser.Browser(tmp_path / "profile") as chromium:
+        chromium.open(path.as_uri())
+        end = time.monotonic() + 30
+        coloured = brass = 0
+        while coloured < 0.05 and time.monotonic() < end:
+            time.sleep(0.2)
+            png = chromium.picture()
+            coloured, brass = shares_of(png)
+    (tmp_path / "view.png").write_bytes(png)
+    assert coloured > 0.05
+    assert (brass > 0.01) == is_live  # the live view alone has the colours of parts

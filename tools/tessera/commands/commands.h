@@ -45,6 +45,7 @@ void add_section(Command& tool, Session& session);
 void add_check(Command& tool, Session& session);
 void add_compare(Command& tool, Session& session);
 void add_measure(Command& tool, Session& session);
+void add_view(Command& tool, Session& session);
 void add_completion(Command& tool, Session& session);
 void add_man(Command& tool, Session& session);
 void add_help(Command& tool, Session& session);
