@@ -9,5 +9,5 @@
 //   });
 export { curvatureKinds, curvatureRange, curvaturesOf, curvatureStops, colourByCurvature } from './curvature.js';
 export { arraysOf, coloursOf, edgeGeometryOf, geometryOf, paletteOf, surfacesOf } from './geometry.js';
-export { ModelObject } from './object.js';
+export { ModelObject, drawnNearer } from './object.js';
 export { viewOf } from './view.js';

@@ -4,6 +4,7 @@ import {
   PointsMaterial, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { drawnNearer } from 'tessera/three';
 import { lights, warm } from './warm.js';
 
 const fieldOfView = 30, patience = 80;  // degrees; milliseconds that a picture waits for its proof
@@ -30,9 +31,9 @@ export class Viewer {
   #camera = new PerspectiveCamera(fieldOfView, 1, 0.01, 100);
   #controls;
   #eye = new PerspectiveCamera();  // the camera of the last picture, with a lamp
-  #wire = new Mesh(undefined, new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.55 }));
-  #flat = new MeshBasicMaterial(
-    { side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  #wire = new Mesh(undefined,
+    drawnNearer(new MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.55 })));
+  #flat = new MeshBasicMaterial({ side: DoubleSide });
   #dot = new Points(new BufferGeometry(), dotMaterial());
   #object = null;
   #shaded = null;  // the object's own material
