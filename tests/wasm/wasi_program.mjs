@@ -3,5 +3,7 @@ import { readFileSync } from 'node:fs';
 import { WASI } from 'node:wasi';
 
 const wasi = new WASI({ version: 'preview1', args: process.argv.slice(2), returnOnExit: true });
-const { instance } = await WebAssembly.instantiate(readFileSync(process.argv[2]), { wasi_snapshot_preview1: wasi.wasiImport });
+const host = { progress() {}, poll() {} };  // of engine/wasm32 and of loops
+const imports = { wasi_snapshot_preview1: wasi.wasiImport, tessera: host };
+const { instance } = await WebAssembly.instantiate(readFileSync(process.argv[2]), imports);
 process.exit(wasi.start(instance));

@@ -170,7 +170,8 @@ tsr_status tsr_model_read(tsr_model** model, const char* path, const tsr_run* ru
   return c_call([&]() -> CStatus {
     if (!model || !path) return null_pointer(model ? "path" : "model");
     return run_work(run, [&](const Execution& execution) {
-      return give_model(model, read_model(path, {.cad = {.cancel = execution.cancel}}));
+      const CadOptions cad{.cancel = execution.cancel, .progress = execution.progress};
+      return give_model(model, read_model(path, {.cad = cad}));
     });
   });
 }

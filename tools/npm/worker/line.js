@@ -8,10 +8,10 @@ const cancelled = () => new TesseraError('cancelled', 'cancelled by the caller')
 async function spawned() {
   if (typeof globalThis.Worker === 'function')
     return new Worker(new URL('./thread.js', import.meta.url), { type: 'module' });
-  const threads = 'node:worker_threads';  // a name that bundlers do not follow
+  const threads = 'node:worker_threads', file = './thread.js';  // names that bundlers do not follow
   const { Worker: Thread } = await import(/* @vite-ignore */ /* webpackIgnore: true */ threads);
   // The program's own options, such as --input-type, are none for this file.
-  return new Thread(new URL('./thread.js', import.meta.url), { execArgv: [] });
+  return new Thread(new URL(file, import.meta.url), { execArgv: [] });
 }
 function listen(worker, type, take) {
   if (worker.on) worker.on(type, take);

@@ -99,7 +99,9 @@ if (globalThis.postMessage && globalThis.addEventListener) {
   globalThis.addEventListener('message', ({ data }) => take(data));
 } else {
   const threads = 'node:worker_threads';  // a name that bundlers do not follow
-  const { parentPort } = await import(/* @vite-ignore */ /* webpackIgnore: true */ threads);
-  post = (message, transfer) => parentPort.postMessage(message, transfer);
-  parentPort.on('message', take);
+  // Messages wait until then. An await here would keep bundlers from making a classic worker.
+  import(/* @vite-ignore */ /* webpackIgnore: true */ threads).then(({ parentPort }) => {
+    post = (message, transfer) => parentPort.postMessage(message, transfer);
+    parentPort.on('message', take);
+  });
 }
