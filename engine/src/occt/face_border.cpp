@@ -11,8 +11,10 @@
 #include <opencascade/Geom2d_BSplineCurve.hxx>
 #include <opencascade/Geom2d_Line.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
-#include <opencascade/Geom_Line.hxx>
+#include <opencascade/Geom_ConicalSurface.hxx>
+#include <opencascade/Geom_CylindricalSurface.hxx>
 #include <opencascade/Geom_Plane.hxx>
+#include <opencascade/Geom_ToroidalSurface.hxx>
 #include <opencascade/Precision.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Iterator.hxx>
@@ -24,8 +26,10 @@
 #include <cmath>
 #include <utility>
 
+#include "occt/kind_of.h"
+#include "occt/plane_curve.h"
+#include "occt/plane_spline.h"
 #include "occt/relative_place.h"
-#include "occt/trim_curve.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -47,6 +51,7 @@ struct EdgeEnds {
 /// vertex of its own.
 bool is_simple(const std::vector<TopoDS_Edge>& edges, const std::vector<EdgeEnds>& ends) {
   std::vector<const void*> starts;
+  starts.reserve(edges.size());
   for (std::size_t k = 0; k < edges.size(); ++k) {
     if (!ends[k].start || edges[k].Location() != edges[0].Location()) return false;
     starts.push_back(ends[k].start);
@@ -78,25 +83,14 @@ bool has_curve(const TopoDS_Edge& edge, const handle<Geom_Surface>& surface, con
   return false;
 }
 
-/// The line of a straight edge in a plane's parameters, as OpenCASCADE finds it by way of several curves. Null for
-/// other edges, and for those that are not parallel to the plane.
-handle<Geom2d_Curve> line_on_plane(const TopoDS_Edge& edge, const Geom_Plane& plane, const TopLoc_Location& place,
-                                   Interval& range) {
-  double from = 0, to = 0;
-  TopLoc_Location location;
-  const auto line = handle<Geom_Line>::DownCast(BRep_Tool::Curve(edge, location, from, to));
-  if (line.IsNull() || !relative_place(location, place).IsIdentity()) return {};
-  const gp_Ax3& axes = plane.Position();
-  const gp_Vec normal = axes.Direction();
-  gp_Vec along = line->Position().Direction();
-  along -= (along * normal) / (normal * normal) * normal;
-  if (std::abs(along.Magnitude() - 1) >= ::Precision::Confusion()) return {};
-  range = {from, to};
-  const gp_Pnt start = line->Position().Location();
-  const double height = gp_Vec(start, axes.Location()) * normal / (normal * normal);
-  const gp_Vec foot(axes.Location(), start.XYZ() + height * normal.XYZ()), x = axes.XDirection(), y = axes.YDirection();
-  const gp_Vec direction = gp_Dir(along);
-  return new Geom2d_Line(gp_Pnt2d(foot * x, foot * y), gp_Dir2d(direction * x, direction * y));
+bool is_finite(const Interval& range) {
+  return !::Precision::IsInfinite(range.from) && !::Precision::IsInfinite(range.to);
+}
+
+/// Adds what is between two places of a line, both included.
+void add_line(const Geom2d_Line& line, const Interval& range, Bnd_Box2d& box) {
+  box.Add(line.Value(range.from));
+  box.Add(line.Value(range.to));
 }
 
 /// Reads the border of one face.
@@ -106,7 +100,9 @@ class BorderReader {
     out_.face = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
     out_.tolerance = std::max(::Precision::Confusion(), BRep_Tool::Tolerance(out_.face));
     surface_ = BRep_Tool::Surface(out_.face, place_);
-    plane_ = handle<Geom_Plane>::DownCast(surface_);
+    plane_ = kind_of<Geom_Plane>(surface_);
+    is_unbounded_ = plane_ || kind_of<Geom_CylindricalSurface>(surface_) || kind_of<Geom_ConicalSurface>(surface_) ||
+                    kind_of<Geom_ToroidalSurface>(surface_);
   }
 
   FaceBorder read() {
@@ -124,9 +120,12 @@ class BorderReader {
     BorderWire& out = out_.wires.emplace_back();
     std::vector<TopoDS_Edge> edges;
     std::vector<EdgeEnds> ends;
+    const auto most = static_cast<std::size_t>(wire.NbChildren());
+    edges.reserve(most);
+    ends.reserve(most);
     for (TopoDS_Iterator child(wire); child.More(); child.Next()) {
       if (child.Value().ShapeType() != TopAbs_EDGE) continue;
-      const TopoDS_Edge edge = TopoDS::Edge(child.Value());
+      const TopoDS_Edge& edge = TopoDS::Edge(child.Value());
       const EdgeEnds met = meet(edge);
       if (is_border(edge)) {
         edges.push_back(edge);
@@ -137,6 +136,7 @@ class BorderReader {
     }
     if (!take_stored_order(edges, ends)) edges = walked(wire, edges);
     Bnd_Box2d box;
+    out.edges.reserve(edges.size());
     for (const TopoDS_Edge& edge : edges) {
       out.edges.push_back(with_curve(edge));
       add_bounds(out.edges.back(), box);
@@ -176,8 +176,7 @@ class BorderReader {
 
   BorderEdge with_curve(const TopoDS_Edge& edge) const {
     BorderEdge out{edge, {}, {0, 0}};
-    if (!plane_.IsNull() && !has_curve(edge, surface_, place_))
-      out.curve = line_on_plane(edge, *plane_, place_, out.range);
+    if (plane_ && !has_curve(edge, surface_, place_)) out.curve = curve_on_plane(edge, *plane_, place_, out.range);
     if (!out.curve.IsNull()) return out;
     out.curve = BRep_Tool::CurveOnSurface(edge, out_.face, out.range.from, out.range.to);
     return out;
@@ -188,10 +187,12 @@ class BorderReader {
   void add_bounds(const BorderEdge& edge, Bnd_Box2d& box) const {
     if (edge.curve.IsNull()) return;
     const auto& [from, to] = edge.range;
+    if (const auto* const line = kind_of<Geom2d_Line>(edge.curve); line && is_unbounded_ && is_finite(edge.range))
+      return add_line(*line, edge.range, box);
     const handle<Geom2d_Curve> whole = bare_curve(edge.curve);
     if (!whole->IsPeriodic() || !whole->IsKind(STANDARD_TYPE(Geom2d_BSplineCurve)) || !(from < to)) {
       // AddUVBounds() would project the edge onto the plane again.
-      if (!plane_.IsNull()) return BndLib_Add2dCurve::Add(edge.curve, from, to, 0, box);
+      if (plane_) return BndLib_Add2dCurve::Add(edge.curve, from, to, 0, box);
       return BRepTools::AddUVBounds(out_.face, edge.edge, box);
     }
     const handle<Geom2d_BSplineCurve> part =
@@ -215,8 +216,9 @@ class BorderReader {
 
   FaceBorder out_;
   handle<Geom_Surface> surface_;
-  handle<Geom_Plane> plane_;  ///< the surface, if it is one
-  TopLoc_Location place_;     ///< of the surface
+  const Geom_Plane* plane_ = nullptr;  ///< the surface, if it is one
+  bool is_unbounded_ = false;          ///< whether its parameters end nowhere, or are periodic
+  TopLoc_Location place_;              ///< of the surface
 };
 
 }  // namespace

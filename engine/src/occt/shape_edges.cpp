@@ -106,8 +106,8 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
   const Parameter& parameter = parameters_[out.edge];
   const Interval range = edges_[out.edge].range, whole = parameter.theirs;  // whole: ours if there is no range
   if (edges_[out.edge].degenerate || !is_range(theirs) || !is_range(whole)) return out;
-  if (trim.is_plain && !parameter.arcs && whole == theirs && range == theirs && trim.curve.domain() == theirs)
-    return out;
+  const bool is_even = parameter.arcs ? trim.parameter.follows(*parameter.arcs) : trim.parameter.is_plain();
+  if (is_even && whole == theirs && range == theirs && trim.curve.domain() == theirs) return out;
   // From the edge's parameter to OpenCASCADE's, to that of the face's curve, to ours.
   const double stretch = (theirs.to - theirs.from) / (whole.to - whole.from);
   const auto their = [&](double s) {
@@ -116,7 +116,7 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
   };
   MonotoneFunction f{range, [&](double s) { return trim.parameter(their(s)); }, {}};
   if (parameter.arcs) f.breaks = parameter.arcs->knots();
-  for (const double b : trim.breaks) {
+  for (const double b : trim.parameter.breaks()) {
     const double t = whole == theirs ? b : whole.from + (b - theirs.from) / stretch;
     f.breaks.push_back(parameter.arcs ? parameter.arcs->parameter(t) : t);
   }
