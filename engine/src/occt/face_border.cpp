@@ -83,8 +83,39 @@ bool has_curve(const TopoDS_Edge& edge, const handle<Geom_Surface>& surface, con
   return false;
 }
 
+/// Whether edges at one place lead from vertex to vertex, the last one to the start.
+bool is_chain(const std::vector<TopoDS_Edge>& edges, const std::vector<EdgeEnds>& ends) {
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    if (!ends[k].end || ends[k].end != ends[(k + 1) % edges.size()].start || edges[k].Location() != edges[0].Location())
+      return false;
+  return !edges.empty();
+}
+
 bool is_finite(const Interval& range) {
   return !::Precision::IsInfinite(range.from) && !::Precision::IsInfinite(range.to);
+}
+
+/// Whether the curve of each edge ends where that of the next one starts, the last one's at the start, as far as a
+/// period is longer.
+bool meet_in_plane(const std::vector<BorderEdge>& edges) {
+  std::vector<std::array<gp_Pnt2d, 2>> ends;
+  Bnd_Box2d box;
+  for (const BorderEdge& edge : edges) {
+    if (edge.curve.IsNull() || !is_finite(edge.range)) return false;
+    std::array<gp_Pnt2d, 2>& end = ends.emplace_back();
+    const bool reversed = edge.edge.Orientation() == TopAbs_REVERSED;
+    end[reversed] = edge.curve->Value(edge.range.from);
+    end[!reversed] = edge.curve->Value(edge.range.to);
+    box.Add(end[0]), box.Add(end[1]);
+  }
+  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+  box.Get(u0, v0, u1, v1);
+  constexpr double near = 1e-3;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const gp_XY gap = ends[(k + 1) % ends.size()][0].XY() - ends[k][1].XY();
+    if (!(std::abs(gap.X()) <= near * (u1 - u0) && std::abs(gap.Y()) <= near * (v1 - v0))) return false;
+  }
+  return true;
 }
 
 /// Adds what is between two places of a line, both included.
@@ -134,17 +165,25 @@ class BorderReader {
         add_bounds(with_curve(edge), out.box);
       }
     }
-    if (!take_stored_order(edges, ends)) edges = walked(wire, edges);
+    out.edges = take_stored_order(edges, ends) ? with_curves(edges) : in_chain(edges, ends);
+    if (out.edges.empty()) out.edges = with_curves(walked(wire, edges));
     Bnd_Box2d box;
-    out.edges.reserve(edges.size());
-    for (const TopoDS_Edge& edge : edges) {
-      out.edges.push_back(with_curve(edge));
-      add_bounds(out.edges.back(), box);
-    }
+    for (const BorderEdge& edge : out.edges) add_bounds(edge, box);
     out.box.Add(box);
     out_.box.Add(box);
   }
 
+  /// The edges of a wire that runs along a seam, say, in the order in which they are stored, or against it, if their
+  /// curves follow each other; else none.
+  std::vector<BorderEdge> in_chain(std::vector<TopoDS_Edge>& edges, std::vector<EdgeEnds>& ends) const {
+    for (int order = 0; order < 2 && !edges.empty(); ++order) {
+      if (is_chain(edges, ends))
+        if (std::vector<BorderEdge> made = with_curves(edges); meet_in_plane(made)) return made;
+      std::reverse(edges.begin() + 1, edges.end());
+      std::reverse(ends.begin() + 1, ends.end());
+    }
+    return {};
+  }
   std::vector<TopoDS_Edge> walked(const TopoDS_Wire& wire, const std::vector<TopoDS_Edge>& all) const {
     std::vector<TopoDS_Edge> edges;
     for (BRepTools_WireExplorer walk(wire, out_.face); walk.More(); walk.Next())
@@ -174,6 +213,12 @@ class BorderReader {
     return ends;
   }
 
+  std::vector<BorderEdge> with_curves(const std::vector<TopoDS_Edge>& edges) const {
+    std::vector<BorderEdge> out;
+    out.reserve(edges.size());
+    for (const TopoDS_Edge& edge : edges) out.push_back(with_curve(edge));
+    return out;
+  }
   BorderEdge with_curve(const TopoDS_Edge& edge) const {
     BorderEdge out{edge, {}, {0, 0}};
     if (plane_ && !has_curve(edge, surface_, place_)) out.curve = curve_on_plane(edge, *plane_, place_, out.range);
