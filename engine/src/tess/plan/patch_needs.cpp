@@ -248,7 +248,8 @@ ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, c
   const auto proven_for = [&](PatchSegments segments) {
     return ProvenSegments{segments, distance_of(*this, patch, segments, anywhere), anywhere};
   };
-  const auto graded = min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform
+  const bool is_one_cell = rates == Rates{1, 1};
+  const auto graded = min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform && !is_one_cell
                           ? graded_segments(limits, rates)
                           : std::nullopt;
   ProvenSegments proven = proven_for(graded ? *graded : rates);
