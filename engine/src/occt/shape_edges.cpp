@@ -58,7 +58,7 @@ Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& 
   }
   out.edges_.resize(count);
   out.parameters_.resize(count);
-  const Status status = each_on_threads(count, 16, execution, [&](std::size_t k) {
+  const Status status = each_on_threads(count, 4, execution, [&](std::size_t k) {
     out.read_edge(k);
     return Status();
   });

@@ -22,7 +22,7 @@ void for_shapes(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind, const Visit& v
   for (TopoDS_Iterator child(shape); child.More(); child.Next()) for_shapes(child.Value(), kind, visit);
 }
 
-/// Shapes by number, without their orientation.
+/// Shapes by number. A shape with two orientations is one.
 class ShapeNumbers {
  public:
   enum class Places {

@@ -120,7 +120,7 @@ class Triangulator {
       part->convert(face);
       return Status();
     };
-    if (Status status = each_on_threads(part->face_count(), 4, progress_.loops(), convert); !status.ok()) return status;
+    if (Status status = each_on_threads(part->face_count(), 1, progress_.loops(), convert); !status.ok()) return status;
     std::move(*part).finish(shape_, sources_, lacks_);
     return shape_.faces.empty() ? Status(lacks_.first_code, lacks_.left_out[0]) : Status();
   }
@@ -165,7 +165,7 @@ class Triangulator {
   }
 
   Status for_faces(FunctionRef<Status(std::size_t)> body) {
-    return each_on_threads(sources_.faces.size(), 4, progress_.loops(), body);
+    return each_on_threads(sources_.faces.size(), 2, progress_.loops(), body);
   }
 
   /// How far borders and a fitted surface may be from the face's own.

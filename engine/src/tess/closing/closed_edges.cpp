@@ -100,7 +100,7 @@ class Closer {
   /// Finds the faces' own points of all vertices.
   Status evaluate() {
     own_.resize(count_);
-    constexpr std::size_t patches_per_task = 64;
+    constexpr std::size_t patches_per_task = 4;
     const auto evaluate_some = [&](std::size_t begin, std::size_t end) {
       for (std::size_t patch = begin; patch < end; ++patch) evaluate(static_cast<std::uint32_t>(patch));
     };
