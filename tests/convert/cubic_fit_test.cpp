@@ -7,16 +7,18 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 namespace tessera::test { namespace {
 
 using Curve3 = std::function<CurveSample(double)>;
 
-/// The cubics over intervals of a parameter from 0 to 1 of unequal lengths, within a tolerance.
-Curve fitted(const Curve3& at, int intervals, double tolerance) {
+/// The cubics over intervals of a parameter from 0 to 1, within a tolerance. The intervals have unequal lengths, unless
+/// `power` is 1.
+Curve fitted(const Curve3& at, int intervals, double tolerance, double power = 1.5) {
   std::vector<CurveSample> samples;
-  const auto end = [&](int k) { return std::pow(double(k) / intervals, 1.5); };
+  const auto end = [&](int k) { return std::pow(double(k) / intervals, power); };
   for (int k = 0; k < intervals; ++k) {
     samples.push_back(at(end(k)));
     samples.push_back(at(0.5 * (end(k) + end(k + 1))));
@@ -68,6 +70,20 @@ TEST(CubicFit, IntervalsThatDifferAreKeptApart) {
   EXPECT_GT(pieces(made), 1u);
   for (int k = 0; k <= 1000; ++k)
     EXPECT_LE(length(evaluate_jet(made, k / 1000.0).position - at(k / 1000.0).point), 1.5e-3) << k;
+}
+
+// The ends and middles of all intervals lie on a straight line, which has the curve's slope at its ends.
+TEST(CubicFit, WavesBetweenSamplesAreFollowed) {
+  constexpr int intervals = 8;
+  const double pi = std::numbers::pi;
+  const Curve3 wave = [&](double t) {
+    const double along = 2 * pi * intervals * t, share = std::sin(pi * t);
+    const double slope = 2 * pi * (intervals * std::cos(along) * share + std::sin(along) * std::cos(pi * t)) * share;
+    return CurveSample{t, {t, std::sin(along) * share * share, 0}, {1, slope, 0}};
+  };
+  const Curve made = fitted(wave, intervals, 1e-3, 1);
+  for (int k = 0; k <= 1000; ++k)
+    EXPECT_LE(length(evaluate_jet(made, k / 1000.0).position - wave(k / 1000.0).point), 1.5e-3) << k;
 }
 
 }}  // namespace tessera::test

@@ -9,11 +9,11 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-std::string knot_text(std::span<const double> knots, const std::string& name, std::size_t k) {
-  return name + "[" + std::to_string(k) + "] = " + text(knots[k]);
+std::string knot_text(std::span<const double> knots, std::string_view name, std::size_t k) {
+  return std::string(name) + "[" + std::to_string(k) + "] = " + text(knots[k]);
 }
 
-Status check_order(std::span<const double> knots, const std::string& name) {
+Status check_order(std::span<const double> knots, std::string_view name) {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const auto index = static_cast<std::ptrdiff_t>(k);
     if (!std::isfinite(knots[k]))
@@ -23,15 +23,17 @@ Status check_order(std::span<const double> knots, const std::string& name) {
               knot_text(knots, name, k) + " is below the knot before it, " + text(knots[k - 1]), index};
   }
   if (!std::isfinite(knots.back() - knots.front()))
-    return {StatusCode::non_finite, "the range of " + name + " is too large: last minus first is not finite"};
+    return {StatusCode::non_finite,
+            "the range of " + std::string(name) + " is too large: last minus first is not finite"};
   return {};
 }
 
-Status check_multiplicity(int degree, std::span<const double> knots, const std::string& name) {
+Status check_multiplicity(int degree, std::span<const double> knots, std::string_view name) {
   const std::size_t p = static_cast<std::size_t>(degree);
   const double start = knots[p], end = knots[knots.size() - p - 1];
   for (std::size_t k = 0; k < knots.size();) {
-    const std::size_t count = multiplicity(knots, knots[k]);
+    std::size_t count = 1;
+    while (k + count < knots.size() && knots[k + count] == knots[k]) ++count;
     const bool inner = knots[k] > start && knots[k] < end;
     if (count > p + (inner ? 0 : 1))
       return {StatusCode::invalid_argument,
@@ -46,11 +48,11 @@ Status check_multiplicity(int degree, std::span<const double> knots, const std::
 
 }  // namespace
 
-Status check_knots(int degree, std::span<const double> knots, const std::string& name) {
+Status check_knots(int degree, std::span<const double> knots, std::string_view name) {
   const std::size_t p = static_cast<std::size_t>(degree);
   if (knots.size() < 2 * (p + 1))
     return {StatusCode::count_mismatch, "degree " + std::to_string(degree) + " needs at least " +
-                                            std::to_string(2 * (p + 1)) + " " + name + ", found " +
+                                            std::to_string(2 * (p + 1)) + " " + std::string(name) + ", found " +
                                             std::to_string(knots.size())};
   if (Status status = check_order(knots, name); !status.ok()) return status;
   const std::size_t last = knots.size() - p - 1;

@@ -29,7 +29,7 @@ struct KnotLine {
 ///
 /// `name` is what messages call them ("knots u"). Errors: count_mismatch, non_finite, invalid_argument (index = the
 /// knot).
-Status check_knots(int degree, std::span<const double> knots, const std::string& name);
+Status check_knots(int degree, std::span<const double> knots, std::string_view name);
 /// Checks that [from, to] lies within [u_p, u_{m+1}] and from < to. Errors: non_finite, invalid_argument.
 Status check_range(int degree, std::span<const double> knots, double from, double to, std::string_view name);
 

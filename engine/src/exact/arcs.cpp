@@ -25,7 +25,9 @@ Arcs::Arcs(double from, double to) : from_(from), to_(to) {
 }
 
 std::vector<Arcs::Point> Arcs::points() const {
-  std::vector<Point> points{on_circle(from_)};
+  std::vector<Point> points;
+  points.reserve(2 * static_cast<std::size_t>(count_) + 1);
+  points.push_back(on_circle(from_));
   const double inner = std::cos(half_);
   for (int k = 0; k < count_; ++k) {
     const Point corner = on_circle(0.5 * (knot(k) + knot(k + 1)));  // where the tangents meet
@@ -37,7 +39,9 @@ std::vector<Arcs::Point> Arcs::points() const {
 }
 
 std::vector<double> Arcs::knots() const {
-  std::vector<double> knots{from_};
+  std::vector<double> knots;
+  knots.reserve(2 * static_cast<std::size_t>(count_) + 4);
+  knots.push_back(from_);
   for (int k = 0; k <= count_; ++k) knots.insert(knots.end(), 2, knot(k));
   knots.push_back(to_);
   return knots;

@@ -26,7 +26,10 @@ SplineLine straight_line(const Vec3& start, const Vec3& end, const Interval& ran
 SplineLine ellipse_arcs(const Vec3& centre, const Vec3& x, const Vec3& y, const Interval& range) {
   const Arcs arcs(range.from, range.to);
   SplineLine line{2, arcs.knots(), {}, {}, range, arcs, 0};
-  for (const Arcs::Point& p : arcs.points()) {
+  const std::vector<Arcs::Point> points = arcs.points();
+  line.points.reserve(points.size());
+  line.weights.reserve(points.size());
+  for (const Arcs::Point& p : points) {
     line.points.push_back(centre + (p.cosine * x + p.sine * y));
     line.weights.push_back(p.weight);
   }

@@ -57,7 +57,7 @@ Result<FaceTrims> FaceTrimsFinder::make(const std::vector<TrimLoop>& loops, cons
 }
 
 Status FaceTrimsFinder::find_ahead(std::span<const SurfaceLoops> faces, const std::atomic<bool>* cancel) {
-  constexpr std::size_t faces_per_task = 4;
+  constexpr std::size_t faces_per_task = 1;
   // One face of each key: faces of one key are nearly always equal.
   std::vector<std::pair<double, const SurfaceLoops*>> due;
   for (const SurfaceLoops& face : faces)
@@ -228,7 +228,7 @@ bool ModelPatches::pass_whole_patch() {
 
 Status ModelPatches::add_all(const FitOptions& fit) {
   // Batches, so that the grids of a large model are not all in memory beside the patches.
-  constexpr std::size_t batch = 256, surfaces_per_task = 4;
+  constexpr std::size_t batch = 256, surfaces_per_task = 2;
   const Execution& execution = progress_.loops();
   const Execution quiet{.cancel = execution.cancel};
   std::vector<SurfaceLoops> some;

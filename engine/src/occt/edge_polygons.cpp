@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
+#include "exact/arcs.h"
 #include "occt/guarded_calls.h"
 #include "occt/relative_place.h"
 #include "tessera/topology.h"
@@ -87,27 +89,30 @@ class PolygonMaker {
   /// many: a loop may leave the face just before the edge ends.
   void fill() {
     const double near = 1e-3 * (stations_.back() - stations_.front());
-    std::vector<Point> all;
+    filled_.clear();
     std::size_t next = 0;  // the first own point that is not before the station
     for (const double s : stations_) {
       while (next < points_.size() && points_[next].s < s) ++next;
       const bool is_own = next < points_.size() && points_[next].s == s;
       const double above = next < points_.size() ? points_[next].s - s : HUGE_VAL;
       const double below = next > 0 ? s - points_[next - 1].s : HUGE_VAL;
-      if (is_own || std::min(above, below) <= near) all.push_back({s, points_[above <= below ? next : next - 1].node});
+      if (is_own || std::min(above, below) <= near)
+        filled_.push_back({s, points_[above <= below ? next : next - 1].node});
     }
-    if (all.size() == 1) all.push_back(all[0]);  // a short edge that is a point of the mesh
-    points_ = std::move(all);
+    if (filled_.size() == 1) filled_.push_back(Point(filled_[0]));  // a short edge that is a point of the mesh
+    points_.swap(filled_);
   }
 
   handle<Poly_PolygonOnTriangulation> polygon_of(std::uint32_t of, std::uint32_t face) {
     const OcctEdge& edge = sources_.edges[of];
+    std::optional<Arcs> arcs;
+    if (const std::optional<Interval>& angles = edge.parameter.arcs) arcs.emplace(angles->from, angles->to);
     const auto count = static_cast<int>(points_.size());
     const handle<Poly_PolygonOnTriangulation> polygon = new Poly_PolygonOnTriangulation(count, true);
     for (int k = 0; k < count; ++k) {
       const Point& at = points_[static_cast<std::size_t>(k)];
       polygon->SetNode(k + 1, at.node);
-      polygon->SetParameter(k + 1, edge.parameter.to_occt(at.s));
+      polygon->SetParameter(k + 1, arcs ? arcs->angle(at.s) : at.s);
     }
     double from = 0, to = 0;
     BRep_Tool::Range(edge.edge, from, to);
@@ -188,6 +193,7 @@ class PolygonMaker {
   const OcctShape& sources_;
   std::vector<double> stations_;  ///< of all uses of the edge
   std::vector<Point> points_;     ///< of a use
+  std::vector<Point> filled_;
   std::vector<EdgePolygon> all_;
   std::vector<std::uint32_t> lacking_;
 };
@@ -203,7 +209,7 @@ Result<EdgePolygons> edge_polygons(const PatchSet& set, const FaceTriangulations
     while (end < on_edges.size() && on_edges[end].edge == on_edges[begin].edge) ++end;
     edges.push_back(on_edges.subspan(begin, end - begin));
   }
-  constexpr std::size_t edges_per_task = 32;
+  constexpr std::size_t edges_per_task = 8;
   const std::size_t tasks = std::max<std::size_t>(1, (edges.size() + edges_per_task - 1) / edges_per_task);
   std::vector<PolygonMaker> makers(tasks, PolygonMaker(set, nodes, made, sources));
   const auto add_some = [&](std::size_t task) {

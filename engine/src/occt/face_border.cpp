@@ -11,8 +11,10 @@
 #include <opencascade/Geom2d_BSplineCurve.hxx>
 #include <opencascade/Geom2d_Line.hxx>
 #include <opencascade/Geom2d_TrimmedCurve.hxx>
-#include <opencascade/Geom_Line.hxx>
+#include <opencascade/Geom_ConicalSurface.hxx>
+#include <opencascade/Geom_CylindricalSurface.hxx>
 #include <opencascade/Geom_Plane.hxx>
+#include <opencascade/Geom_ToroidalSurface.hxx>
 #include <opencascade/Precision.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Iterator.hxx>
@@ -24,8 +26,10 @@
 #include <cmath>
 #include <utility>
 
+#include "occt/kind_of.h"
+#include "occt/plane_curve.h"
+#include "occt/plane_spline.h"
 #include "occt/relative_place.h"
-#include "occt/trim_curve.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -47,6 +51,7 @@ struct EdgeEnds {
 /// vertex of its own.
 bool is_simple(const std::vector<TopoDS_Edge>& edges, const std::vector<EdgeEnds>& ends) {
   std::vector<const void*> starts;
+  starts.reserve(edges.size());
   for (std::size_t k = 0; k < edges.size(); ++k) {
     if (!ends[k].start || edges[k].Location() != edges[0].Location()) return false;
     starts.push_back(ends[k].start);
@@ -78,25 +83,45 @@ bool has_curve(const TopoDS_Edge& edge, const handle<Geom_Surface>& surface, con
   return false;
 }
 
-/// The line of a straight edge in a plane's parameters, as OpenCASCADE finds it by way of several curves. Null for
-/// other edges, and for those that are not parallel to the plane.
-handle<Geom2d_Curve> line_on_plane(const TopoDS_Edge& edge, const Geom_Plane& plane, const TopLoc_Location& place,
-                                   Interval& range) {
-  double from = 0, to = 0;
-  TopLoc_Location location;
-  const auto line = handle<Geom_Line>::DownCast(BRep_Tool::Curve(edge, location, from, to));
-  if (line.IsNull() || !relative_place(location, place).IsIdentity()) return {};
-  const gp_Ax3& axes = plane.Position();
-  const gp_Vec normal = axes.Direction();
-  gp_Vec along = line->Position().Direction();
-  along -= (along * normal) / (normal * normal) * normal;
-  if (std::abs(along.Magnitude() - 1) >= ::Precision::Confusion()) return {};
-  range = {from, to};
-  const gp_Pnt start = line->Position().Location();
-  const double height = gp_Vec(start, axes.Location()) * normal / (normal * normal);
-  const gp_Vec foot(axes.Location(), start.XYZ() + height * normal.XYZ()), x = axes.XDirection(), y = axes.YDirection();
-  const gp_Vec direction = gp_Dir(along);
-  return new Geom2d_Line(gp_Pnt2d(foot * x, foot * y), gp_Dir2d(direction * x, direction * y));
+/// Whether edges at one place lead from vertex to vertex, the last one to the start.
+bool is_chain(const std::vector<TopoDS_Edge>& edges, const std::vector<EdgeEnds>& ends) {
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    if (!ends[k].end || ends[k].end != ends[(k + 1) % edges.size()].start || edges[k].Location() != edges[0].Location())
+      return false;
+  return !edges.empty();
+}
+
+bool is_finite(const Interval& range) {
+  return !::Precision::IsInfinite(range.from) && !::Precision::IsInfinite(range.to);
+}
+
+/// Whether the curve of each edge ends where that of the next one starts, the last one's at the start, as far as a
+/// period is longer.
+bool meet_in_plane(const std::vector<BorderEdge>& edges) {
+  std::vector<std::array<gp_Pnt2d, 2>> ends;
+  Bnd_Box2d box;
+  for (const BorderEdge& edge : edges) {
+    if (edge.curve.IsNull() || !is_finite(edge.range)) return false;
+    std::array<gp_Pnt2d, 2>& end = ends.emplace_back();
+    const bool reversed = edge.edge.Orientation() == TopAbs_REVERSED;
+    end[reversed] = edge.curve->Value(edge.range.from);
+    end[!reversed] = edge.curve->Value(edge.range.to);
+    box.Add(end[0]), box.Add(end[1]);
+  }
+  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+  box.Get(u0, v0, u1, v1);
+  constexpr double near = 1e-3;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const gp_XY gap = ends[(k + 1) % ends.size()][0].XY() - ends[k][1].XY();
+    if (!(std::abs(gap.X()) <= near * (u1 - u0) && std::abs(gap.Y()) <= near * (v1 - v0))) return false;
+  }
+  return true;
+}
+
+/// Adds what is between two places of a line, both included.
+void add_line(const Geom2d_Line& line, const Interval& range, Bnd_Box2d& box) {
+  box.Add(line.Value(range.from));
+  box.Add(line.Value(range.to));
 }
 
 /// Reads the border of one face.
@@ -106,7 +131,9 @@ class BorderReader {
     out_.face = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
     out_.tolerance = std::max(::Precision::Confusion(), BRep_Tool::Tolerance(out_.face));
     surface_ = BRep_Tool::Surface(out_.face, place_);
-    plane_ = handle<Geom_Plane>::DownCast(surface_);
+    plane_ = kind_of<Geom_Plane>(surface_);
+    is_unbounded_ = plane_ || kind_of<Geom_CylindricalSurface>(surface_) || kind_of<Geom_ConicalSurface>(surface_) ||
+                    kind_of<Geom_ToroidalSurface>(surface_);
   }
 
   FaceBorder read() {
@@ -124,9 +151,12 @@ class BorderReader {
     BorderWire& out = out_.wires.emplace_back();
     std::vector<TopoDS_Edge> edges;
     std::vector<EdgeEnds> ends;
+    const auto most = static_cast<std::size_t>(wire.NbChildren());
+    edges.reserve(most);
+    ends.reserve(most);
     for (TopoDS_Iterator child(wire); child.More(); child.Next()) {
       if (child.Value().ShapeType() != TopAbs_EDGE) continue;
-      const TopoDS_Edge edge = TopoDS::Edge(child.Value());
+      const TopoDS_Edge& edge = TopoDS::Edge(child.Value());
       const EdgeEnds met = meet(edge);
       if (is_border(edge)) {
         edges.push_back(edge);
@@ -135,16 +165,25 @@ class BorderReader {
         add_bounds(with_curve(edge), out.box);
       }
     }
-    if (!take_stored_order(edges, ends)) edges = walked(wire, edges);
+    out.edges = take_stored_order(edges, ends) ? with_curves(edges) : in_chain(edges, ends);
+    if (out.edges.empty()) out.edges = with_curves(walked(wire, edges));
     Bnd_Box2d box;
-    for (const TopoDS_Edge& edge : edges) {
-      out.edges.push_back(with_curve(edge));
-      add_bounds(out.edges.back(), box);
-    }
+    for (const BorderEdge& edge : out.edges) add_bounds(edge, box);
     out.box.Add(box);
     out_.box.Add(box);
   }
 
+  /// The edges of a wire that runs along a seam, say, in the order in which they are stored, or against it, if their
+  /// curves follow each other; else none.
+  std::vector<BorderEdge> in_chain(std::vector<TopoDS_Edge>& edges, std::vector<EdgeEnds>& ends) const {
+    for (int order = 0; order < 2 && !edges.empty(); ++order) {
+      if (is_chain(edges, ends))
+        if (std::vector<BorderEdge> made = with_curves(edges); meet_in_plane(made)) return made;
+      std::reverse(edges.begin() + 1, edges.end());
+      std::reverse(ends.begin() + 1, ends.end());
+    }
+    return {};
+  }
   std::vector<TopoDS_Edge> walked(const TopoDS_Wire& wire, const std::vector<TopoDS_Edge>& all) const {
     std::vector<TopoDS_Edge> edges;
     for (BRepTools_WireExplorer walk(wire, out_.face); walk.More(); walk.Next())
@@ -174,10 +213,15 @@ class BorderReader {
     return ends;
   }
 
+  std::vector<BorderEdge> with_curves(const std::vector<TopoDS_Edge>& edges) const {
+    std::vector<BorderEdge> out;
+    out.reserve(edges.size());
+    for (const TopoDS_Edge& edge : edges) out.push_back(with_curve(edge));
+    return out;
+  }
   BorderEdge with_curve(const TopoDS_Edge& edge) const {
     BorderEdge out{edge, {}, {0, 0}};
-    if (!plane_.IsNull() && !has_curve(edge, surface_, place_))
-      out.curve = line_on_plane(edge, *plane_, place_, out.range);
+    if (plane_ && !has_curve(edge, surface_, place_)) out.curve = curve_on_plane(edge, *plane_, place_, out.range);
     if (!out.curve.IsNull()) return out;
     out.curve = BRep_Tool::CurveOnSurface(edge, out_.face, out.range.from, out.range.to);
     return out;
@@ -188,10 +232,12 @@ class BorderReader {
   void add_bounds(const BorderEdge& edge, Bnd_Box2d& box) const {
     if (edge.curve.IsNull()) return;
     const auto& [from, to] = edge.range;
+    if (const auto* const line = kind_of<Geom2d_Line>(edge.curve); line && is_unbounded_ && is_finite(edge.range))
+      return add_line(*line, edge.range, box);
     const handle<Geom2d_Curve> whole = bare_curve(edge.curve);
     if (!whole->IsPeriodic() || !whole->IsKind(STANDARD_TYPE(Geom2d_BSplineCurve)) || !(from < to)) {
       // AddUVBounds() would project the edge onto the plane again.
-      if (!plane_.IsNull()) return BndLib_Add2dCurve::Add(edge.curve, from, to, 0, box);
+      if (plane_) return BndLib_Add2dCurve::Add(edge.curve, from, to, 0, box);
       return BRepTools::AddUVBounds(out_.face, edge.edge, box);
     }
     const handle<Geom2d_BSplineCurve> part =
@@ -215,8 +261,9 @@ class BorderReader {
 
   FaceBorder out_;
   handle<Geom_Surface> surface_;
-  handle<Geom_Plane> plane_;  ///< the surface, if it is one
-  TopLoc_Location place_;     ///< of the surface
+  const Geom_Plane* plane_ = nullptr;  ///< the surface, if it is one
+  bool is_unbounded_ = false;          ///< whether its parameters end nowhere, or are periodic
+  TopLoc_Location place_;              ///< of the surface
 };
 
 }  // namespace

@@ -45,10 +45,10 @@ class SurfaceSides {
   /// Moves the parts of a curve that leave the surface by less than the tolerance onto the side there: the trim would
   /// cut them off, and what is cut off meets no other face along the edge.
   Status keep_inside(Curve& curve) const {
+    const auto moves = [&](Vec3 point) { return keep_inside(point); };
+    if (std::ranges::none_of(curve.points(), moves)) return {};
     std::vector<Vec3> points(curve.points().begin(), curve.points().end());
-    bool moved = false;
-    for (Vec3& p : points) moved = keep_inside(p) || moved;
-    if (!moved) return {};
+    for (Vec3& p : points) keep_inside(p);
     Result<Curve> made = curve.is_rational()
                              ? Curve::nurbs(curve.degree(), points, curve.weights(), curve.knots(), curve.domain())
                              : Curve::b_spline(curve.degree(), points, curve.knots(), curve.domain());
@@ -155,6 +155,8 @@ Result<FaceLoops> face_loops(const FaceBorder& border, const FaceBox& box, const
   FaceLoops out;
   for (const BorderWire& wire : border.wires) {
     TrimLoop loop{{}, !wire.is_outer};
+    loop.curves.reserve(wire.edges.size());
+    loop.coedges.reserve(wire.edges.size());
     for (const BorderEdge& edge : wire.edges)
       if (Status status = append_edge(edge, sides, parameters, tolerances, edges, loop); !status.ok()) return status;
     const auto is_nameless = [](const Coedge& coedge) { return coedge.edge == no_id; };

@@ -22,6 +22,7 @@
 
 #include "exact/straight_lines.h"
 #include "occt/guarded_calls.h"
+#include "occt/kind_of.h"
 #include "occt/spline_line.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -127,8 +128,8 @@ Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& bo
 handle<Geom_Surface> bare_surface(handle<Geom_Surface> surface) {
   for (;;) {
     handle<Geom_Surface> inner;
-    if (const auto trimmed = handle<Geom_RectangularTrimmedSurface>::DownCast(surface)) inner = trimmed->BasisSurface();
-    if (const auto offset = handle<Geom_OffsetSurface>::DownCast(surface)) inner = offset->Surface();
+    if (const auto* const trimmed = kind_of<Geom_RectangularTrimmedSurface>(surface)) inner = trimmed->BasisSurface();
+    if (const auto* const offset = kind_of<Geom_OffsetSurface>(surface)) inner = offset->Surface();
     if (inner.IsNull()) return surface;
     surface = inner;
   }
@@ -136,10 +137,10 @@ handle<Geom_Surface> bare_surface(handle<Geom_Surface> surface) {
 
 Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain& box) {
   const handle<Geom_Surface> surface = bare_surface(given);
-  if (const auto s = handle<Geom_BSplineSurface>::DownCast(surface)) return from_spline(*s, box);
-  if (const auto s = handle<Geom_BezierSurface>::DownCast(surface)) return from_bezier(*s, box);
-  if (const auto s = handle<Geom_SurfaceOfRevolution>::DownCast(surface)) return from_revolution(*s, box);
-  if (const auto s = handle<Geom_SurfaceOfLinearExtrusion>::DownCast(surface)) return from_extrusion(*s, box);
+  if (const auto* const s = kind_of<Geom_BSplineSurface>(surface)) return from_spline(*s, box);
+  if (const auto* const s = kind_of<Geom_BezierSurface>(surface)) return from_bezier(*s, box);
+  if (const auto* const s = kind_of<Geom_SurfaceOfRevolution>(surface)) return from_revolution(*s, box);
+  if (const auto* const s = kind_of<Geom_SurfaceOfLinearExtrusion>(surface)) return from_extrusion(*s, box);
   const GeomAdaptor_Surface adaptor(surface);
   switch (adaptor.GetType()) {
     case GeomAbs_Plane:

@@ -115,6 +115,7 @@ class FaceTriangulations::Maker {
     for (const auto& pole : poles)
       if (!is_pole(pole[1])) poles_.push_back(pole[1]);
     std::vector<Candidate> some;
+    some.reserve(64);
     for_vertices([&](std::uint32_t patch, std::uint32_t k) {
       if (all_.nodes_[k] != 0 || is_on_side(k)) some.push_back({k, parameters(patch, k)});
     });

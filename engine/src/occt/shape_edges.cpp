@@ -3,7 +3,6 @@
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Geom_Curve.hxx>
 #include <opencascade/TopExp.hxx>
-#include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Vertex.hxx>
 
@@ -45,18 +44,21 @@ bool turns_twice(const Geom_Curve& curve, const Interval& range) {
 
 Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& execution) {
   ShapeEdges out;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
-    TopExp::MapShapes(face.Current(), TopAbs_EDGE, out.maps_->edges);
-  for (int k = 1; k <= out.maps_->edges.Extent(); ++k)
-    TopExp::MapShapes(out.maps_->edges(k), TopAbs_VERTEX, out.maps_->vertices);
-  for (int k = 1; k <= out.maps_->vertices.Extent(); ++k) {
-    const TopoDS_Vertex vertex = TopoDS::Vertex(out.maps_->vertices(k));
+  for_shapes(shape, TopAbs_FACE, [&](const TopoDS_Shape& face) {
+    for_shapes(face, TopAbs_EDGE, [&](const TopoDS_Shape& edge) { out.edge_numbers_.add(edge); });
+  });
+  const std::size_t count = out.edge_numbers_.size();
+  for (std::size_t k = 0; k < count; ++k)
+    for_shapes(out.edge_numbers_[k], TopAbs_VERTEX,
+               [&](const TopoDS_Shape& vertex) { out.vertex_numbers_.add(vertex); });
+  out.vertices_.reserve(out.vertex_numbers_.size());
+  for (std::size_t k = 0; k < out.vertex_numbers_.size(); ++k) {
+    const TopoDS_Vertex& vertex = TopoDS::Vertex(out.vertex_numbers_[k]);
     out.vertices_.push_back({vec3(BRep_Tool::Pnt(vertex).XYZ()), length_or_zero(BRep_Tool::Tolerance(vertex))});
   }
-  const auto count = static_cast<std::size_t>(out.maps_->edges.Extent());
   out.edges_.resize(count);
   out.parameters_.resize(count);
-  const Status status = each_on_threads(count, 16, execution, [&](std::size_t k) {
+  const Status status = each_on_threads(count, 4, execution, [&](std::size_t k) {
     out.read_edge(k);
     return Status();
   });
@@ -65,13 +67,12 @@ Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& 
 }
 
 std::uint32_t ShapeEdges::vertex_id(const TopoDS_Shape& vertex) const {
-  const int index = vertex.IsNull() ? 0 : maps_->vertices.FindIndex(vertex);
-  if (index == 0 || !is_finite(vertices_[static_cast<std::size_t>(index - 1)].position)) return no_id;
-  return static_cast<std::uint32_t>(index - 1);
+  const std::uint32_t number = vertex.IsNull() ? no_id : vertex_numbers_.find(vertex);
+  return number == no_id || !is_finite(vertices_[number].position) ? no_id : number;
 }
 
 void ShapeEdges::read_edge(std::size_t k) {
-  const TopoDS_Edge edge = TopoDS::Edge(maps_->edges(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD));
+  const TopoDS_Edge edge = TopoDS::Edge(edge_numbers_[k].Oriented(TopAbs_FORWARD));
   BrepEdge& out = edges_[k];
   Parameter& parameter = parameters_[k];
   TopoDS_Vertex start, end;
@@ -100,14 +101,13 @@ void ShapeEdges::read_edge(std::size_t k) {
 Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs,
                           double tolerance) const {
   Coedge out{no_id, edge.Orientation() == TopAbs_REVERSED, {}};
-  const int index = maps_->edges.FindIndex(edge);
-  if (index == 0) return out;
-  out.edge = static_cast<std::uint32_t>(index - 1);
+  out.edge = edge_numbers_.find(edge);
+  if (out.edge == no_id) return out;
   const Parameter& parameter = parameters_[out.edge];
   const Interval range = edges_[out.edge].range, whole = parameter.theirs;  // whole: ours if there is no range
   if (edges_[out.edge].degenerate || !is_range(theirs) || !is_range(whole)) return out;
-  if (trim.is_plain && !parameter.arcs && whole == theirs && range == theirs && trim.curve.domain() == theirs)
-    return out;
+  const bool is_even = parameter.arcs ? trim.parameter.follows(*parameter.arcs) : trim.parameter.is_plain();
+  if (is_even && whole == theirs && range == theirs && trim.curve.domain() == theirs) return out;
   // From the edge's parameter to OpenCASCADE's, to that of the face's curve, to ours.
   const double stretch = (theirs.to - theirs.from) / (whole.to - whole.from);
   const auto their = [&](double s) {
@@ -116,7 +116,7 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
   };
   MonotoneFunction f{range, [&](double s) { return trim.parameter(their(s)); }, {}};
   if (parameter.arcs) f.breaks = parameter.arcs->knots();
-  for (const double b : trim.breaks) {
+  for (const double b : trim.parameter.breaks()) {
     const double t = whole == theirs ? b : whole.from + (b - theirs.from) / stretch;
     f.breaks.push_back(parameter.arcs ? parameter.arcs->parameter(t) : t);
   }
@@ -126,11 +126,12 @@ Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const 
 }
 
 void ShapeEdges::give_to(Shape& shape, OcctShape& sources) && {
-  for (std::size_t k = 0; k < edges_.size(); ++k) {
-    const TopoDS_Shape edge = maps_->edges(static_cast<int>(k) + 1).Oriented(TopAbs_FORWARD);
-    sources.edges.push_back({TopoDS::Edge(edge), occt_parameter(parameters_[k].arcs)});
-  }
-  for (int k = 1; k <= maps_->vertices.Extent(); ++k) sources.vertices.push_back(TopoDS::Vertex(maps_->vertices(k)));
+  sources.edges.reserve(edges_.size());
+  for (std::size_t k = 0; k < edges_.size(); ++k)
+    sources.edges.push_back(
+        {TopoDS::Edge(edge_numbers_[k].Oriented(TopAbs_FORWARD)), occt_parameter(parameters_[k].arcs)});
+  sources.vertices.reserve(vertices_.size());
+  for (std::size_t k = 0; k < vertices_.size(); ++k) sources.vertices.push_back(TopoDS::Vertex(vertex_numbers_[k]));
   // An unusable vertex has no edges, see vertex_id().
   for (BrepVertex& vertex : vertices_)
     if (!is_finite(vertex.position)) vertex.position = {};

@@ -1,13 +1,12 @@
 #pragma once
 // The vertices and edges of a shape, with ids.
 
-#include <memory>
-#include <opencascade/TopTools_IndexedMapOfShape.hxx>
 #include <opencascade/TopoDS_Edge.hxx>
 #include <optional>
 #include <vector>
 
 #include "exact/arcs.h"
+#include "occt/shape_numbers.h"
 #include "occt/trim_curve.h"
 #include "tessera/model.h"
 #include "tessera/occt.h"
@@ -40,11 +39,7 @@ class ShapeEdges {
   void read_edge(std::size_t k);
   std::uint32_t vertex_id(const TopoDS_Shape& vertex) const;
 
-  /// Apart, because OpenCASCADE's maps are copied where others are moved.
-  struct Maps {
-    TopTools_IndexedMapOfShape edges, vertices;
-  };
-  std::unique_ptr<Maps> maps_ = std::make_unique<Maps>();
+  ShapeNumbers edge_numbers_{ShapeNumbers::Places::differ}, vertex_numbers_{ShapeNumbers::Places::differ};
   std::vector<BrepVertex> vertices_;
   std::vector<BrepEdge> edges_;
   std::vector<Parameter> parameters_;

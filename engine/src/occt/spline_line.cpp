@@ -14,6 +14,7 @@
 #include <mutex>
 
 #include "occt/guarded_calls.h"
+#include "occt/kind_of.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -99,9 +100,9 @@ PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, co
 
 Result<SplineLine> spline_line(const handle<Geom_Curve>& given, const Interval& range) {
   handle<Geom_Curve> curve = given;
-  while (const auto trimmed = handle<Geom_TrimmedCurve>::DownCast(curve)) curve = trimmed->BasisCurve();
-  if (const auto spline = handle<Geom_BSplineCurve>::DownCast(curve)) return from_spline(*spline, range);
-  if (const auto bezier = handle<Geom_BezierCurve>::DownCast(curve)) return from_bezier(*bezier, range);
+  while (const auto* const trimmed = kind_of<Geom_TrimmedCurve>(curve)) curve = trimmed->BasisCurve();
+  if (const auto* const spline = kind_of<Geom_BSplineCurve>(curve)) return from_spline(*spline, range);
+  if (const auto* const bezier = kind_of<Geom_BezierCurve>(curve)) return from_bezier(*bezier, range);
   const GeomAdaptor_Curve adaptor(curve);
   const auto arcs = [&](const gp_Ax2& axes, double major, double minor) {
     return ellipse_arcs(vec3(axes.Location().XYZ()), major * vec3(axes.XDirection().XYZ()),

@@ -5,14 +5,14 @@
 #include <opencascade/BRep_PolygonOnTriangulation.hxx>
 #include <opencascade/BRep_TEdge.hxx>
 #include <opencascade/BRep_TFace.hxx>
-#include <opencascade/TopExp_Explorer.hxx>
 
+#include <algorithm>
 #include <string>
-#include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
+#include "occt/kind_of.h"
 #include "occt/relative_place.h"
+#include "occt/shape_numbers.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -24,31 +24,39 @@ class Storing {
   Storing(const OcctShape& sources, std::span<const handle<Poly_Triangulation>> made)
       : faces_(sources.faces), edges_(sources.edges), made_(made) {}
 
-  /// Takes the edges whose polygons on older triangulations go.
   Status prepare_faces() {
+    faces_of_.reserve(faces_.size());
     for (std::size_t k = 0; k < faces_.size(); ++k) {
-      const TopoDS_Face& face = faces_[k].face;
-      const handle<BRep_TFace> own = handle<BRep_TFace>::DownCast(face.TShape());
-      if (own.IsNull()) return Status(StatusCode::internal, "a face is no BRep face");
+      auto* const own = kind_of<BRep_TFace>(faces_[k].face.TShape());
+      if (!own) return Status(StatusCode::internal, "a face is no BRep face");
       if (own->Locked())
         return Status(StatusCode::invalid_argument, "face " + std::to_string(k) + " is locked: unlock it first",
                       static_cast<std::int64_t>(k));
-      faces_of_.push_back({own, made_[k], own->Triangulations(), own->ActiveTriangulation()});
-      for (const handle<Poly_Triangulation>& one : own->Triangulations()) replaced_.insert(one.get());
-      if (own->Triangulations().IsEmpty()) continue;
-      for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next())
-        if (Status status = take(edge.Current()); !status.ok()) return status;
+      faces_of_.push_back({own, made_[k], {}, own->ActiveTriangulation()});
+      // The list of a face that has at most one triangulation, its active one, follows from that.
+      const int before = own->NbTriangulations();
+      if (before > (faces_of_.back().active.IsNull() ? 0 : 1)) faces_of_.back().before = own->Triangulations();
+      if (before > 0)
+        for (const handle<Poly_Triangulation>& one : own->Triangulations()) replaced_.push_back(one.get());
     }
+    std::ranges::sort(replaced_);
     return {};
   }
 
-  Status prepare(std::span<const EdgePolygon> polygons) {
-    for (const EdgePolygon& polygon : polygons)
-      if (Status status = take(edges_[polygon.edge].edge); !status.ok()) return status;
-    for (auto& [key, edge] : curves_of_)
-      for (const handle<BRep_CurveRepresentation>& curve : edge.own->Curves())
-        if (!curve->IsPolygonOnTriangulation() || !replaced_.contains(curve->Triangulation().get()))
-          edge.next.Append(curve);
+  /// Finds the edges whose polygons on older triangulations go, and makes the new ones.
+  Status prepare_edges(std::span<const EdgePolygon> polygons) {
+    number_of_.reserve(edges_.size());
+    for (const OcctEdge& edge : edges_) {
+      number_of_.push_back(shapes_.add(edge.edge));
+      if (shapes_.size() == edges_of_.size()) continue;
+      auto* const own = kind_of<BRep_TEdge>(edge.edge.TShape());
+      if (!own) return Status(StatusCode::internal, "an edge is no BRep edge");
+      edges_of_.push_back({own, has_replaced(*own)});
+    }
+    for (const EdgePolygon& polygon : polygons) edges_of_[number_of_[polygon.edge]].changes = true;
+    for (const OfEdge& edge : edges_of_)
+      if (edge.changes && edge.own->Locked())
+        return Status(StatusCode::invalid_argument, "an edge is locked: unlock it first");
     for (const EdgePolygon& polygon : polygons) add(polygon);
     return {};
   }
@@ -58,38 +66,57 @@ class Storing {
     try {
       for (; done < faces_of_.size(); ++done) put(faces_of_[done]);
     } catch (...) {
-      for (std::size_t k = 0; k <= done && k < faces_of_.size(); ++k)
-        faces_of_[k].own->Triangulations(faces_of_[k].before, faces_of_[k].active);
+      for (std::size_t k = 0; k <= done && k < faces_of_.size(); ++k) put_back(faces_of_[k]);
       throw;
     }
     for (const OfFace& face : faces_of_) face.own->Modified(true);
-    for (auto& [key, edge] : curves_of_) {  // moves nodes of lists, which does not fail
-      edge.own->ChangeCurves().Clear();
-      edge.own->ChangeCurves().Append(edge.next);
+    for (OfEdge& edge : edges_of_) {  // removes and moves nodes of lists, which does not fail
+      if (!edge.changes) continue;
+      drop_replaced(edge.own->ChangeCurves());
+      edge.own->ChangeCurves().Append(edge.added);
       edge.own->Modified(true);
     }
   }
 
  private:
   struct OfFace {
-    handle<BRep_TFace> own;
+    BRep_TFace* own;
     handle<Poly_Triangulation> next;
     Poly_ListOfTriangulation before;
     handle<Poly_Triangulation> active;
   };
   struct OfEdge {
-    handle<BRep_TEdge> own;
-    BRep_ListOfCurveRepresentation next = {};
+    BRep_TEdge* own;
+    bool changes;
+    BRep_ListOfCurveRepresentation added = {};
   };
 
-  static void put(const OfFace& face) { face.own->Triangulation(face.next, true); }
+  /// Takes the place of an active triangulation that is the only one, without memory.
+  static void put(const OfFace& face) {
+    const bool is_only = face.before.IsEmpty() && !face.active.IsNull() && !face.next.IsNull();
+    face.own->Triangulation(face.next, !is_only);
+  }
+  static void put_back(const OfFace& face) {
+    if (face.before.IsEmpty())
+      face.own->Triangulation(face.active, face.active.IsNull());
+    else
+      face.own->Triangulations(face.before, face.active);
+  }
 
-  Status take(const TopoDS_Shape& edge) {
-    const handle<BRep_TEdge> own = handle<BRep_TEdge>::DownCast(edge.TShape());
-    if (own.IsNull()) return Status(StatusCode::internal, "an edge is no BRep edge");
-    if (own->Locked()) return Status(StatusCode::invalid_argument, "an edge is locked: unlock it first");
-    curves_of_.try_emplace(own.get(), OfEdge{own});
-    return {};
+  bool is_replaced(const handle<BRep_CurveRepresentation>& curve) const {
+    return curve->IsPolygonOnTriangulation() &&
+           std::ranges::binary_search(replaced_, static_cast<const void*>(curve->Triangulation().get()));
+  }
+  bool has_replaced(const BRep_TEdge& edge) const {
+    return !replaced_.empty() && std::any_of(edge.Curves().begin(), edge.Curves().end(),
+                                             [&](const auto& curve) { return is_replaced(curve); });
+  }
+  void drop_replaced(BRep_ListOfCurveRepresentation& curves) const {
+    for (BRep_ListOfCurveRepresentation::Iterator at(curves); at.More();)
+      if (is_replaced(at.Value()))
+        curves.Remove(at);
+      else
+        at.Next();
   }
 
   void add(const EdgePolygon& polygon) {
@@ -101,15 +128,17 @@ class Storing {
       curve = new BRep_PolygonOnTriangulation(polygon.first, on, place);
     else
       curve = new BRep_PolygonOnClosedTriangulation(polygon.first, polygon.second, on, place);
-    curves_of_.at(edge.TShape().get()).next.Append(curve);
+    edges_of_[number_of_[polygon.edge]].added.Append(curve);
   }
 
   std::span<const OcctFace> faces_;
   std::span<const OcctEdge> edges_;
   std::span<const handle<Poly_Triangulation>> made_;
   std::vector<OfFace> faces_of_;
-  std::unordered_set<const void*> replaced_;
-  std::unordered_map<const void*, OfEdge> curves_of_;
+  std::vector<const void*> replaced_;  ///< triangulations, in order
+  ShapeNumbers shapes_{ShapeNumbers::Places::count_as_one};
+  std::vector<std::uint32_t> number_of_;  ///< of each edge, its shape
+  std::vector<OfEdge> edges_of_;          ///< by shape
 };
 
 }  // namespace
@@ -118,7 +147,7 @@ Status store(const OcctShape& sources, std::span<const handle<Poly_Triangulation
              std::span<const EdgePolygon> polygons) {
   Storing storing(sources, made);
   if (Status status = storing.prepare_faces(); !status.ok()) return status;
-  if (Status status = storing.prepare(polygons); !status.ok()) return status;
+  if (Status status = storing.prepare_edges(polygons); !status.ok()) return status;
   storing.commit();
   return {};
 }

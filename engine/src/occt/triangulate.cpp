@@ -6,14 +6,12 @@
 #include <opencascade/BndLib_AddSurface.hxx>
 #include <opencascade/Bnd_Box.hxx>
 #include <opencascade/Poly_TriangulationParameters.hxx>
-#include <opencascade/TopExp_Explorer.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Compound.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <unordered_set>
 #include <utility>
 
 #include "base/text.h"
@@ -21,6 +19,7 @@
 #include "occt/face_triangulation.h"
 #include "occt/guarded_calls.h"
 #include "occt/part_shape.h"
+#include "occt/shape_numbers.h"
 #include "occt/stored_meshes.h"
 #include "occt/unmet_edges.h"
 #include "parallel/call_progress.h"
@@ -49,12 +48,15 @@ TopoDS_Shape distinct_faces(const TopoDS_Shape& shape, bool& repeats) {
   TopoDS_Compound faces;
   const BRep_Builder builder;
   builder.MakeCompound(faces);
-  std::unordered_set<const void*> seen;
-  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
-    if (seen.insert(at.Current().TShape().get()).second)
-      builder.Add(faces, at.Current());
+  ShapeNumbers seen(ShapeNumbers::Places::count_as_one);
+  for_shapes(shape, TopAbs_FACE, [&](const TopoDS_Shape& face) {
+    const std::size_t before = seen.size();
+    seen.add(face);
+    if (seen.size() > before)
+      builder.Add(faces, face);
     else
       repeats = true;
+  });
   return faces;
 }
 
@@ -66,12 +68,13 @@ double size_of(const TopoDS_Face& face) {
     const gp_XYZ sides = box.CornerMax().XYZ() - box.CornerMin().XYZ();
     size = std::max({size, sides.X(), sides.Y(), sides.Z()});
   };
-  for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
+  for_shapes(face, TopAbs_EDGE, [&](const TopoDS_Shape& found) {
+    const TopoDS_Edge& edge = TopoDS::Edge(found);
     Bnd_Box box;
-    if (!BRep_Tool::Degenerated(TopoDS::Edge(edge.Current())) && BRep_Tool::IsGeometric(TopoDS::Edge(edge.Current())))
-      BndLib_Add3dCurve::Add(BRepAdaptor_Curve(TopoDS::Edge(edge.Current())), 0, box);
+    if (!BRep_Tool::Degenerated(edge) && BRep_Tool::IsGeometric(edge))
+      BndLib_Add3dCurve::Add(BRepAdaptor_Curve(edge), 0, box);
     extend(box);
-  }
+  });
   if (size > 0) return size;
   Bnd_Box box;
   BndLib_AddSurface::Add(BRepAdaptor_Surface(face), 0, box);
@@ -88,6 +91,7 @@ class Triangulator {
   }
 
   Result<OcctMeshReport> run() {
+    if (described_.shape.NbChildren() == 0) return Status(StatusCode::invalid_argument, "the shape has no faces");
     if (Status status = convert(); !status.ok()) return status;
     Result<PatchSet> set = make_patch_set(shape_);
     if (!set) return set.status();
@@ -116,7 +120,7 @@ class Triangulator {
       part->convert(face);
       return Status();
     };
-    if (Status status = each_on_threads(part->face_count(), 4, progress_.loops(), convert); !status.ok()) return status;
+    if (Status status = each_on_threads(part->face_count(), 1, progress_.loops(), convert); !status.ok()) return status;
     std::move(*part).finish(shape_, sources_, lacks_);
     return shape_.faces.empty() ? Status(lacks_.first_code, lacks_.left_out[0]) : Status();
   }
@@ -161,7 +165,7 @@ class Triangulator {
   }
 
   Status for_faces(FunctionRef<Status(std::size_t)> body) {
-    return each_on_threads(sources_.faces.size(), 4, progress_.loops(), body);
+    return each_on_threads(sources_.faces.size(), 2, progress_.loops(), body);
   }
 
   /// How far borders and a fitted surface may be from the face's own.
@@ -280,7 +284,6 @@ Status check_request(const TopoDS_Shape& shape, const OcctMeshOptions& options) 
     return bad("the deflection must be above 0, found " + text(options.deflection));
   if (options.angle && !(*options.angle > 0)) return bad("the angle must be above 0, found " + text(*options.angle));
   if (shape.IsNull()) return bad("the shape is null");
-  if (!TopExp_Explorer(shape, TopAbs_FACE).More()) return bad("the shape has no faces");
   return {};
 }
 

@@ -3,13 +3,13 @@
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Poly_PolygonOnTriangulation.hxx>
 #include <opencascade/Poly_Triangulation.hxx>
-#include <opencascade/TopExp_Explorer.hxx>
-#include <opencascade/TopTools_IndexedMapOfShape.hxx>
 #include <opencascade/TopoDS.hxx>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "occt/shape_numbers.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -42,29 +42,29 @@ std::vector<double> parameters_along(const TopoDS_Edge& edge, const handle<Poly_
 }  // namespace
 
 UnmetEdges unmet_edges(const TopoDS_Shape& shape) {
-  TopTools_IndexedMapOfShape edges;
+  ShapeNumbers edges(ShapeNumbers::Places::differ);
   std::vector<PolygonUses> uses;
   UnmetEdges out;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+  for_shapes(shape, TopAbs_FACE, [&](const TopoDS_Shape& face) {
     TopLoc_Location place;
-    const handle<Poly_Triangulation> on = BRep_Tool::Triangulation(TopoDS::Face(face.Current()), place);
+    const handle<Poly_Triangulation> on = BRep_Tool::Triangulation(TopoDS::Face(face), place);
     bool differs = false;
-    for (TopExp_Explorer at(face.Current(), TopAbs_EDGE); at.More(); at.Next()) {
-      const TopoDS_Edge& edge = TopoDS::Edge(at.Current());
+    for_shapes(face, TopAbs_EDGE, [&](const TopoDS_Shape& shape_of_edge) {
+      const TopoDS_Edge& edge = TopoDS::Edge(shape_of_edge);
       const bool bounds = edge.Orientation() == TopAbs_FORWARD || edge.Orientation() == TopAbs_REVERSED;
-      if (!bounds || BRep_Tool::Degenerated(edge)) continue;
-      const auto k = static_cast<std::size_t>(edges.Add(edge.Oriented(TopAbs_FORWARD))) - 1;
+      if (!bounds || BRep_Tool::Degenerated(edge)) return;
+      const std::size_t k = edges.add(edge);
       if (k == uses.size()) uses.emplace_back();
       PolygonUses& of = uses[k];
       std::vector<double> parameters = parameters_along(edge, on, place);
       const bool is_other = of.count > 0 ? !are_same(of.parameters, parameters) : parameters.empty();
       of.differ = of.differ || is_other, differs = differs || is_other;
       if (of.count++ == 0) of.parameters = std::move(parameters);
-    }
-    if (differs) out.faces.push_back(TopoDS::Face(face.Current()));
-  }
+    });
+    if (differs) out.faces.push_back(TopoDS::Face(face));
+  });
   for (std::size_t k = 0; k < uses.size(); ++k)
-    if (uses[k].differ || uses[k].count % 2 != 0) out.edges.push_back(TopoDS::Edge(edges(static_cast<int>(k) + 1)));
+    if (uses[k].differ || uses[k].count % 2 != 0) out.edges.push_back(TopoDS::Edge(edges[k].Oriented(TopAbs_FORWARD)));
   return out;
 }
 

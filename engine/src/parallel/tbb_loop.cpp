@@ -38,6 +38,10 @@ class Order {
 }  // namespace
 
 void tbb_loop(std::size_t pieces, FunctionRef<void(std::size_t)> body) {
+  if (tbb::this_task_arena::max_concurrency() == 1) {  // tasks would take longer than small pieces do
+    for (std::size_t piece = 0; piece < pieces; ++piece) body(piece);
+    return;
+  }
   Order order;
   order.call_begins();
   // oneTBB would skip pieces without a word once a task group around this call is cancelled. Its threads take the

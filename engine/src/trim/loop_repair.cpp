@@ -113,6 +113,7 @@ bool is_less(const ParameterPoint& a, const ParameterPoint& b) { return a.u != b
 /// The points in which an odd number of ends meet, in order.
 std::vector<ParameterPoint> odd_ends(const std::vector<TrimPiece>& pieces) {
   std::vector<ParameterPoint> ends;
+  ends.reserve(8);
   for (const TrimPiece& piece : pieces) {
     if (!ends.empty() && ends.back() == piece.start())  // most pieces follow each other
       ends.pop_back();
@@ -121,14 +122,14 @@ std::vector<ParameterPoint> odd_ends(const std::vector<TrimPiece>& pieces) {
     ends.push_back(piece.end());
   }
   std::sort(ends.begin(), ends.end(), is_less);
-  std::vector<ParameterPoint> odd;
-  for (const ParameterPoint& end : ends) {
-    if (!odd.empty() && odd.back() == end)
-      odd.pop_back();
+  std::size_t count = 0;
+  for (const ParameterPoint& end : ends)
+    if (count > 0 && ends[count - 1] == end)
+      --count;
     else
-      odd.push_back(end);
-  }
-  return odd;
+      ends[count++] = ParameterPoint(end);
+  ends.resize(count);
+  return ends;
 }
 
 /// One direction of the domain, and the other one.

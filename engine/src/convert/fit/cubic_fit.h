@@ -34,7 +34,8 @@ class CubicFit {
     append(at, is_near, with_quarters(at, a, at(0.5 * (from + to)), b), 0);
   }
   /// Follows a curve over intervals one after the other, where the cubics before them end. Its slope is continuous
-  /// where they meet, so a cubic goes over several of them if the points at all their ends and middles are near.
+  /// where they meet, so a cubic goes over several of them if the points at all their ends and middles are near, and
+  /// those at their quarters, as points and slopes beside them show.
   ///
   /// - `samples`: of the ends and middles of all intervals, 2 for each interval and one more.
   template <class At, class IsNear>
@@ -48,6 +49,8 @@ class CubicFit {
       const std::size_t other = k % 2 ? count + (k + 1) / 2 : count - k / 2;
       if (other < samples.size()) fits = is_near(cubic.at(samples[other].t), samples[other].point);
     }
+    for (std::size_t k = 0; k + 1 < samples.size() && fits; ++k)  // slopes show waves that samples are the zeros of
+      fits = is_near(cubic.at(0.5 * (samples[k].t + samples[k + 1].t)), middle(samples[k], samples[k + 1]));
     if (fits) return put(cubic);
     follow(at, is_near, samples.first(2 * (count / 2) + 1));
     follow(at, is_near, samples.subspan(2 * (count / 2)));
@@ -76,6 +79,11 @@ class CubicFit {
       return y * y * y * points[0] + 3 * x * y * y * points[1] + 3 * x * x * y * points[2] + x * x * x * points[3];
     }
   };
+
+  /// The middle of the cubic between two samples.
+  static Vec3 middle(const CurveSample& a, const CurveSample& b) {
+    return 0.5 * (a.point + b.point) + (b.t - a.t) / 8 * (a.slope - b.slope);
+  }
 
   template <class At>
   static std::array<CurveSample, 5> with_quarters(const At& at, const CurveSample& a, const CurveSample& middle,

@@ -134,6 +134,7 @@ bool CellLimits::keeps(PatchSegments segments) const {
 }
 
 std::optional<Rates> cheapest(const CellLimits& limits, int most) {
+  if (const Rates one{1, 1}; limits.keeps(one)) return one;  // most planes
   const UniformLimits uniform(limits);
   const LeastRates least(limits);
   const double fewest = least.cells();

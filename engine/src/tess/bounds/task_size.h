@@ -5,6 +5,6 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-inline constexpr std::size_t patches_per_task = 64, blocks_per_task = 8;
+inline constexpr std::size_t patches_per_task = 64, blocks_per_task = 8, normals_per_task = 4;
 
 }}  // namespace tessera::abi_0_1

@@ -116,8 +116,8 @@ class Piece {
   AtCorners at_corners() const {
     AtCorners corners;
     const int m = net_.rows - 1, n = net_.columns - 1;
-    for (const int i : {0, m})
-      for (const int j : {0, n}) {
+    for (int i = 0; i <= m; i += std::max(m, 1))
+      for (int j = 0; j <= n; j += std::max(n, 1)) {
         const Vec3 normal = net_.point(i, j);
         const double size = dot(normal, normal);
         if (!(size > rounding_ * rounding_)) continue;
@@ -138,6 +138,7 @@ class Piece {
     const double *const x = net_.at[0], *const y = net_.at[1], *const z = net_.at[2];
     const int count = net_.count() - step;
     if (count <= 0) return 4 * rounding_;
+    if (row == 1) return 4 * rounding_ * (1 + 0x1p-40);  // points of different rows
     double *const across = scratch_.first, *const along = scratch_.second, *const both = scratch_.third;
     for (int k = 0; k < count; ++k) {
       const double dx = x[k + step] - x[k], dy = y[k + step] - y[k], dz = z[k + step] - z[k];

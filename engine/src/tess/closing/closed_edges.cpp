@@ -100,7 +100,7 @@ class Closer {
   /// Finds the faces' own points of all vertices.
   Status evaluate() {
     own_.resize(count_);
-    constexpr std::size_t patches_per_task = 64;
+    constexpr std::size_t patches_per_task = 4;
     const auto evaluate_some = [&](std::size_t begin, std::size_t end) {
       for (std::size_t patch = begin; patch < end; ++patch) evaluate(static_cast<std::uint32_t>(patch));
     };
@@ -319,7 +319,15 @@ class Closer {
   void list_edge_vertices() {
     out_.edge_vertices = std::make_unique<std::vector<EdgeVertex>>();
     std::vector<EdgeVertex>& all = *out_.edge_vertices;
+    all.reserve(met_.vertices.size());
+    std::size_t begin = 0;  // of the edge
+    const auto sort_edge = [&] {
+      std::ranges::sort(std::span(all).subspan(begin), {},
+                        [](const EdgeVertex& of) { return std::tuple(of.use, of.s, of.patch, of.vertex); });
+      begin = all.size();
+    };
     for (const StationVertices::Station& station : met_.stations) {
+      if (!all.empty() && all.back().edge != station.edge) sort_edge();
       for (std::uint32_t k = station.first; k < station.first + station.count; ++k) {
         const auto [patch, own] = met_.vertices[k];
         const bool is_inserted = (own & PatchVertex::inserted) != 0;
@@ -327,8 +335,7 @@ class Closer {
         if (vertex != no_id) all.push_back({station.edge, met_.uses[k], patch, vertex, station.s});
       }
     }
-    std::ranges::sort(all, {},
-                      [](const EdgeVertex& of) { return std::tuple(of.edge, of.use, of.s, of.patch, of.vertex); });
+    sort_edge();
   }
 
   /// Counts the segments of edges on the boundary of the mesh. The boundary of triangles, modulo 2, stays that of their
@@ -337,6 +344,7 @@ class Closer {
   std::int64_t count_open() {
     std::int64_t open = 0;
     std::vector<std::array<std::uint32_t, 2>> segments;
+    segments.reserve(met_.spans.size());
     for (const auto& [low, high, is_alone] : met_.spans) {
       const std::uint32_t edge = met_.stations[low].edge;
       if (is_open_[edge] || !runs_.meet(edge)) {

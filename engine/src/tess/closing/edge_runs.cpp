@@ -122,7 +122,7 @@ ParameterPoint point_at(std::span<const TrimPiece> pieces, double t) {
 }
 
 EdgeRuns::EdgeRuns(const PatchSet::Impl& set) : edges_(set.edges.get()) {
-  constexpr std::size_t faces_per_task = 32;
+  constexpr std::size_t faces_per_task = 8;
   const std::size_t count = edges_->faces.size();
   std::vector<std::uint32_t> uses(count);
   std::uint32_t next_use = 0;

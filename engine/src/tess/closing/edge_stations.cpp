@@ -78,6 +78,7 @@ void EdgeStations::add_vertices(const EdgeRun& run, const Domain& domain, const 
   const auto [low, high] = ends_along(run.side, pieces);
   const auto [begin, end] = range_along(run.side, domain);
   std::vector<double>& parameters = of(run).chords.parameters;
+  parameters.reserve(static_cast<std::size_t>(segments.rate()) + 1);
   for (int k = 0; k <= segments.rate(); ++k) {
     const double at = line_at(begin, end, segments, k);
     if (!(at > low && at < high)) continue;
@@ -98,6 +99,8 @@ void EdgeStations::lay(const EdgeRun& run, const ChordLimits& limits, Workspace&
   RunStations& stations = of(run);
   LaidChords& chords = stations.chords;
   chords.points.clear(), chords.parameters.clear();
+  const std::size_t least = std::max<std::size_t>(stations.at.size(), 8);
+  chords.points.reserve(least), chords.parameters.reserve(least);
   chords.sliver = workspace.layer.append(runs_->pieces(run), {stations.at, stations.same}, limits, chords.points,
                                          chords.parameters);
 }
@@ -138,6 +141,7 @@ void EdgeStations::list(const EdgeRun& run) {
   const Interval& range = curve.curve->domain();
   of_run.same = same_share_ * (range.to - range.from);
   const std::vector<double>& stations = stations_[run.edge];
+  of_run.at.reserve(stations.size());
   const auto [from, to] =
       std::minmax({curve.to_edge(pieces.front().range.from), curve.to_edge(pieces.back().range.to)});
   auto station = std::ranges::lower_bound(stations, from);

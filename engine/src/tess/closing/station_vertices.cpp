@@ -16,6 +16,10 @@ class StationLister {
   Result<StationVertices> run(const std::atomic<bool>* cancel) {
     const std::size_t edges = runs_.edges().edges.size();
     out_.own.resize(edges);
+    out_.stations.reserve(4 * edges);
+    out_.vertices.reserve(8 * edges);
+    out_.spans.reserve(8 * edges);
+    if (with_uses_) out_.uses.reserve(8 * edges);
     for (std::uint32_t edge = 0; edge < edges; ++edge) {
       if (cancel && cancel->load()) return Status(StatusCode::cancelled, "cancelled by the caller");
       segments_.clear();

@@ -7,7 +7,7 @@
 namespace tessera { inline namespace abi_0_1 {
 
 Result<CutFaces> CutFaces::of(const PatchSet::Impl& set, bool closes_edges, const Execution& execution) {
-  constexpr std::size_t regions_per_task = 16;
+  constexpr std::size_t regions_per_task = 8;
   CutFaces made;
   if (set.edges && closes_edges) made.runs.emplace(set);
   if (!set.trims) return made;

@@ -20,7 +20,7 @@ namespace {
 constexpr double cell_share = 0.6, sliver_share = 0.25;
 constexpr double band_share = 1.5;  // a bound of most triangles of the band over that of cells
 constexpr int max_cuts = 24;
-constexpr std::size_t cuts_per_task = 4, rooms_per_task = 64, edges_per_task = 16;
+constexpr std::size_t cuts_per_task = 1, rooms_per_task = 16, edges_per_task = 4;
 
 /// The largest number of triangles of a patch, and of all cut ones, at which a plan goes on: some times the limit, so
 /// that messages can say how many a mesh takes that exceeds it by less.

@@ -36,7 +36,9 @@ PatchNeeds::PatchNeeds(const PatchSet::Impl& set, const PlannerOptions& options)
       fit_error_(set.fit_error.distance),
       chords_(set, options.f64_positions),
       shapes_(set.patches.size()),
-      roundings_(set.patches.size()) {}
+      roundings_(set.patches.size()) {
+  if (keeps_turnings()) own_turnings_.resize(shapes_.size());
+}
 
 void PatchNeeds::bound_block(std::size_t block) {
   const PatchSet::Impl& set = *set_;
@@ -49,6 +51,13 @@ void PatchNeeds::bound_block(std::size_t block) {
     shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
     roundings_[k] = own_rounding(group, set.slots[k]);
   }
+}
+
+void PatchNeeds::bound_turning(std::size_t patch) {
+  if (own_turnings_.empty()) return;
+  const PatchSet::Impl& set = *set_;
+  const bool is_curve = set.collapsed[patch].any() && PatchShape::of(set.patches[patch], set.collapsed[patch]).is_curve;
+  if (!is_curve) own_turnings_[patch] = {TurningBound(set.patches[patch], *options_.angle)};
 }
 
 double PatchNeeds::own_rounding(const BlockGroup& group, PatchSet::Slot slot) const {
@@ -88,11 +97,12 @@ Status PatchNeeds::bound_views(const Execution& execution) {
     if (Status status = parallel_for(set_->lane_counts.size(), blocks_per_task, execution, see); !status.ok())
       return status;
   }
-  if (!options_.angle || !options_.keeps_bounds) return {};
-  std::vector<NormalTurning> found(shapes_.size());
+  if (own_turnings_.empty()) return {};
+  std::vector<NormalTurning> found = std::move(own_turnings_);
+  own_turnings_ = {};
   const auto bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      if (!shapes_[k].is_curve) found[k] = turning_of(k);
+      if (!shapes_[k].is_curve && !found[k].bound.is_finite()) found[k] = turning_of(k);
   };
   const Status status = parallel_for(shapes_.size(), patches_per_task, execution, bound);
   turnings_ = std::move(found);
@@ -248,7 +258,8 @@ ProvenSegments PatchNeeds::settle(std::size_t patch, const CellLimits& limits, c
   const auto proven_for = [&](PatchSegments segments) {
     return ProvenSegments{segments, distance_of(*this, patch, segments, anywhere), anywhere};
   };
-  const auto graded = min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform
+  const bool is_one_cell = rates == Rates{1, 1};
+  const auto graded = min_rate == 1 && limits.is_for_more_than_distance() && !request.uniform && !is_one_cell
                           ? graded_segments(limits, rates)
                           : std::nullopt;
   ProvenSegments proven = proven_for(graded ? *graded : rates);

@@ -41,8 +41,8 @@ struct NeededSegments {
 
 /// The shapes, bounds and roundings of all patches of a set.
 ///
-/// Use: bound_block() of all blocks, take_weld(), bound_views(); then the patches' needs may be asked for, by any
-/// number of threads. Edits are followed block by block, see PlanUpdate.
+/// Use: bound_block() of all blocks and bound_turning() of all patches, take_weld(), bound_views(); then the patches'
+/// needs may be asked for, by any number of threads. Edits are followed block by block, see PlanUpdate.
 class PatchNeeds {
  public:
   /// The set must outlive this object.
@@ -50,10 +50,16 @@ class PatchNeeds {
 
   /// Finds shapes, bounds and roundings of the patches of one block. Threads: any number, each with its own block.
   void bound_block(std::size_t block);
+  /// Bounds how the normal of a patch turns without welding, if such bounds are kept. Threads: any number, each with
+  /// its own patch; others may bound blocks.
+  void bound_turning(std::size_t patch);
+  /// Whether bounds on how normals turn are kept.
+  bool keeps_turnings() const { return options_.angle && options_.keeps_bounds; }
   /// Adds the displacements of welded vertices to the roundings, and takes note of the borders that welding makes
   /// points.
   void take_weld(const Weld& weld);
-  /// Bounds how normals turn, if they are kept, and what the camera sees. Errors: cancelled.
+  /// Bounds how normals turn beside borders that welding makes points, if bounds are kept, and what the camera sees.
+  /// Errors: cancelled.
   Status bound_views(const Execution& execution);
   /// Bounds what the camera sees of the patches of one block; needs their roundings.
   void bound_pictures(std::size_t block);
@@ -110,9 +116,10 @@ class PatchNeeds {
   std::vector<PatchShape> shapes_;
   std::vector<double> roundings_;  ///< `[patch]`: the largest error of its vertices, by rounding or by welding
   double largest_rounding_ = 0;
-  std::vector<SideMask> welded_poles_;      ///< `[patch]`: borders that welding makes points; empty if it makes none
-  std::vector<NormalTurning> turnings_;     ///< `[patch]`, if PlannerOptions::keeps_bounds and there is an angle
-  std::vector<ScreenSpaceBound> pictures_;  ///< `[patch]`, if there is a camera
+  std::vector<SideMask> welded_poles_;       ///< `[patch]`: borders that welding makes points; empty if it makes none
+  std::vector<NormalTurning> turnings_;      ///< `[patch]`, if PlannerOptions::keeps_bounds and there is an angle
+  std::vector<NormalTurning> own_turnings_;  ///< the same without welding, until bound_views()
+  std::vector<ScreenSpaceBound> pictures_;   ///< `[patch]`, if there is a camera
 };
 
 /// Returns the kept segments of a patch where possible, else the best, if a distance is the only limit. `products`:

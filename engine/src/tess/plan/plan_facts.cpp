@@ -20,18 +20,20 @@ Result<SharedEdges> bound_and_find_edges(PatchNeeds& needs, const Execution& exe
   if (!status.ok()) return status;
   SharedEdges edges;
   // One thread finds the edges, one after the other, while the others find the bounds.
-  const std::size_t pieces = 1 + (blocks + blocks_per_task - 1) / blocks_per_task;
+  const std::size_t patches = needs.keeps_turnings() ? set.patches.size() : 0,
+                    normals = (patches + normals_per_task - 1) / normals_per_task;
   const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t piece = begin; piece < end; ++piece) {
-      if (piece == 0) {
+    for (std::size_t piece = begin; piece < end; ++piece)
+      if (piece == 0)
         edges = SharedEdges(set, hashes);
-        continue;
-      }
-      const std::size_t last = std::min(blocks, piece * blocks_per_task);
-      for (std::size_t block = (piece - 1) * blocks_per_task; block < last; ++block) needs.bound_block(block);
-    }
+      else if (piece <= blocks)
+        needs.bound_block(piece - 1);
+      else
+        for (std::size_t k = (piece - blocks - 1) * normals_per_task;
+             k < std::min(patches, (piece - blocks) * normals_per_task); ++k)
+          needs.bound_turning(k);
   };
-  status = parallel_for(pieces, pieces > 2 ? 1 : 2, execution, find_or_bound);
+  status = parallel_for(1 + blocks + normals, 1, execution, find_or_bound);
   if (!status.ok()) return status;
   return edges;
 }

@@ -110,7 +110,7 @@ Status choose_one_by_one(const PatchNeeds& needs, const PlanRequest& request, Di
       if (!patches.pixels.empty()) patches.pixels[k] = rounded_up(needed.pixels);
     }
   };
-  return parallel_for(beyond.size(), patches_per_task, execution, choose_some);
+  return parallel_for(beyond.size(), normals_per_task, execution, choose_some);
 }
 
 /// States the patches beyond their limits. A tolerance that some patches keep is that of the mesh, and the others state

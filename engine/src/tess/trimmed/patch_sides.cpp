@@ -27,8 +27,10 @@ void PatchSides::set(std::span<const TrimPiece> pieces, double ParameterPoint::*
 std::vector<SidePoint> PatchSides::points(std::size_t line, std::size_t k, Segments segments) const {
   const double from = along_[k], to = along_[k + 1];
   std::vector<double> even;
+  even.reserve(static_cast<std::size_t>(segments.rate()) + 1);
   for (int i = 0; i <= segments.rate(); ++i) even.push_back(line_at(from, to, segments, i));
   std::vector<SidePoint> points;
+  points.reserve(even.size() + 1);
   bool below = starts_inside_, above = starts_inside_;
   auto node = nodes_[line].begin();
   const auto end = nodes_[line].end();

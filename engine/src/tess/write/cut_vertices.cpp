@@ -11,7 +11,7 @@
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-constexpr std::size_t cut_patches_per_task = 4;
+constexpr std::size_t cut_patches_per_task = 1;
 
 class CutWriter {
  public:
