@@ -7,6 +7,7 @@ set -euo pipefail
 
 build=$1
 native=${2:-}
+[[ -x $native ]] || native=  # a build without the command line
 source=$(cd "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$source/../.." && pwd)
 
