@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "support/grids.h"
@@ -31,15 +32,23 @@ struct Reference {
     std::vector<BezierPatch> patches;
     for (int k = 0; k < 21; ++k) patches.push_back(random_polynomial(random, 3, 3));
     for (int k = 0; k < 5; ++k) patches.push_back(random_rational(random, 2, 4));
+    for (int k = 0; k < 3; ++k) patches.push_back(random_rational(random, 3, 3));
     patches.push_back(polynomial(3, 3, std::vector<Vec3>(16, Vec3{1, 2, 3})));  // no normal anywhere
+    patches.push_back(with_pole(random_polynomial(random, 3, 3)));
     patches.insert(patches.begin() + 9, random_polynomial(random, 1, 2));
     PatchSetOptions options;
     options.blocks.double_bernstein = true;
     return set_of(patches, options);
   }
+  /// The patch with one point for its side u = 0.
+  static BezierPatch with_pole(const BezierPatch& patch) {
+    std::vector<Vec3> points(patch.points().begin(), patch.points().end());
+    std::fill_n(points.begin(), patch.degree_v() + 1, points[0]);
+    return polynomial(patch.degree_u(), patch.degree_v(), points);
+  }
   static std::vector<double> parameters(int count) {
     std::vector<double> t;
-    for (int k = 0; k < count; ++k) t.push_back((k + 0.3) / count);
+    for (int k = 0; k < count; ++k) t.push_back(k == 0 ? 0 : (k + 0.3) / count);
     return t;
   }
   /// Where a component of a record lies in the blocks.
@@ -133,6 +142,41 @@ TEST(Lines, AnySizeOfGrid) {
       check_line_grid<float>(nu, nv, isa, {0, 3, 5});
       check_line_grid<double>(nu, nv, isa, {0, 3, 5});
     }
+}
+
+/// Positions and normals at the start of longer records take kernels of their own: vertices of 32 bytes with uv at
+/// their end, and others. The reference is made by other kernels; the gap between records keeps its values.
+TEST(Lines, VerticesWithAGap) {
+  for (const Isa isa : available_isas())
+    for (const auto& [nu, nv] : {std::pair{1, 1}, {1, 2}, {3, 3}, {4, 4}, {9, 9}, {2, 31}, {3, 32}, {2, 33}, {5, 70}}) {
+      const Reference<float> r(nu, nv, isa);
+      const std::size_t count = r.plan.capacity();
+      for (const Stores stores : {Stores::plain, Stores::streaming})
+        for (const std::size_t record : {7u, 8u, 9u, 16u})
+          for (const std::size_t shift : {0u, 1u, 2u, 5u, 8u}) {
+            SCOPED_TRACE(testing::Message() << nu << "x" << nv << " " << name(isa) << " " << record << "+" << shift);
+            const auto vertices = [&](std::span<float> all) {
+              const auto memory = all.subspan(shift);
+              return QuantityViews<float>{.position = View3<float>::interleaved(memory, record, 0),
+                                          .normal = View3<float>::interleaved(memory, record, 3)};
+            };
+            check_lines(r, record * count + shift, stores, vertices, false);
+            check_lines(r, record * count + shift, stores, vertices, true);
+          }
+    }
+}
+
+TEST(Lines, VerticesInPieces) {
+  for (const Isa isa : available_isas()) {
+    const Reference<float> r(67, 61, isa);
+    check_lines(
+        r, 8 * r.plan.capacity(), Stores::automatic,
+        [](std::span<float> all) {
+          return QuantityViews<float>{.position = View3<float>::interleaved(all, 8, 0),
+                                      .normal = View3<float>::interleaved(all, 8, 3)};
+        },
+        false);
+  }
 }
 
 /// Large grids are cut into rows, which begin and end in the middle of cache lines and of other threads' cache lines.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/impl_access.h"
@@ -104,6 +105,35 @@ TEST(PatchWriter, EveryLayoutHoldsTheSameNumbersAndNothingElseIsTouched) {
         EXPECT_EQ(wrong, 0u) << shift << " " << record;
         EXPECT_EQ(touched, 0u) << shift << " " << record;
       }
+}
+
+/// Vertices of 32 bytes, position, normal and uv, take stores of their own. Other records with a gap do as well.
+TEST(PatchWriter, VerticesHoldTheSameNumbersAndNothingElseIsTouched) {
+  const float untouched = -1.5e33f;
+  for (const auto& [set, tolerance] : patch_writer_cases()) {
+    const Tessellation plan = good(Tessellation::make(set, {.tolerance = tolerance}));
+    Mesh mesh = good(plan.allocate());
+    ASSERT_TRUE(plan.run(set, mesh.views()).ok());
+    std::vector<std::uint32_t> indices(mesh.indices.size());
+    for (const std::size_t record : {7u, 8u, 11u})
+      for (const std::size_t shift : {0u, 3u}) {
+        std::vector<float> memory(shift + record * mesh.vertex_count() + 8, untouched), expected = memory;
+        const std::span<float> all = std::span(memory).subspan(shift, record * mesh.vertex_count());
+        MeshViews views;
+        views.position = View3<float>::interleaved(all, record, 0);
+        views.normal = View3<float>::interleaved(all, record, 3);
+        if (record > 7) views.parameter = View2<float>::interleaved(all, record, 6);
+        views.indices = indices;
+        ASSERT_TRUE(plan.run(set, views).ok());
+        for (std::size_t k = 0; k < mesh.vertex_count(); ++k) {
+          float* const vertex = expected.data() + shift + record * k;
+          std::copy_n(mesh.positions.begin() + static_cast<std::ptrdiff_t>(3 * k), 3, vertex);
+          std::copy_n(mesh.normals.begin() + static_cast<std::ptrdiff_t>(3 * k), 3, vertex + 3);
+          if (record > 7) std::copy_n(mesh.parameters.begin() + static_cast<std::ptrdiff_t>(2 * k), 2, vertex + 6);
+        }
+        EXPECT_EQ(std::memcmp(memory.data(), expected.data(), memory.size() * sizeof(float)), 0) << record << shift;
+      }
+  }
 }
 
 TEST(PatchWriter, PositionsAloneAreThoseWithNormals) {

@@ -110,8 +110,10 @@ using QuantityBlocks = Quantities<std::span<T>, std::span<T>, std::span<NormalKi
 /// Evaluates all patches on the grid, into views. Derivatives are by local parameters.
 ///
 /// Outputs may share memory by interleaving but must not overlap otherwise. Whole vectors are written, streaming as
-/// Execution::stores says, to packed views, to structures of arrays, and to views that fill one record together; other
-/// views are written value by value, at a small part of the speed.
+/// Execution::stores says, to packed views, to structures of arrays, and to views that fill one record together. Float
+/// positions and normals that begin longer records, in this order and without other outputs, are written record by
+/// record by plain stores: vertices of position, normal and uv, say, whose uv keeps its value. Other views are written
+/// value by value, at a small part of the speed.
 ///
 /// Errors, with nothing written: buffer_too_small; stale (a plan for a set with other patches or blocks);
 /// invalid_argument (no output; a plan of other precision; a view that lacks a component, has a stride below 1, is

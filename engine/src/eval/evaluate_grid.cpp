@@ -5,6 +5,7 @@
 //   -> evaluate_sample() (kernel/sample/sample_kernel.inl.h): the sums, and what their rounding is.
 // Positions alone into packed float records, polynomial patches: evaluate_views() -> evaluate_flat() (eval/flat_grid.h)
 //   -> kernel/grid/flat_kernel.inl.h: the same sums in the same order.
+// Positions and normals at the start of longer records: StagedBlock::run() -> kernel/grid/record_kernel.inl.h.
 // The kernels write block-interleaved outputs themselves. Patch-contiguous outputs pass a stage in the first-level
 // cache (eval/staged_block.h).
 

@@ -45,6 +45,8 @@ struct LineKernels {
 };
 
 /// The order of the values in the stage, and how they get from there to the caller's views:
+/// - no stage for positions and normals in floats that begin records with a gap after them (vertices of position, normal
+///   and uv, say): see GridKernels::grid_records_f32;
 /// - one array for all views of numbers, if these are the fields of one record without gaps (positions and normals
 ///   interleaved, say);
 /// - otherwise one array for each packed view, and one for each component of a structure of arrays;
@@ -87,6 +89,7 @@ class StageLayout {
       record_width_ += quantity.width;
     });
     if (find_record()) return;
+    find_vertices(out);
     int first = 0;
     for (Field& field : std::span(fields_).first(field_count_)) {
       field.first = first;
@@ -99,6 +102,8 @@ class StageLayout {
   std::span<const Array> arrays() const { return std::span(arrays_).first(array_count_); }
   std::span<const Array> columns() const { return std::span(columns_).first(column_count_); }
   bool one_record() const { return one_record_; }
+  /// Whether the views are positions and normals at the start of records that are longer.
+  bool has_vertices() const { return has_vertices_; }
   int record_width() const { return record_width_; }  ///< values of all wanted views
   /// Samples that are staged at once, if rows of the grid divide evenly: enough that the cost of the calls is small,
   /// and so few that their stores overlap with the next computation.
@@ -134,6 +139,16 @@ class StageLayout {
     return one_record_ = true;
   }
 
+  void find_vertices(const QuantityViews<T>& out) {
+    const auto starts_with = [](const View3<T>& view, const T* first) {
+      return view.component[0] == first && view.component[1] == first + 1 && view.component[2] == first + 2;
+    };
+    const View3<T>&position = out.position, &normal = out.normal;
+    has_vertices_ = sizeof(T) == 4 && field_count_ == 2 && !position.empty() && !normal.empty() &&
+                    position.stride > record_width_ && normal.stride == position.stride &&
+                    starts_with(position, position.component[0]) && starts_with(normal, position.component[0] + 3);
+  }
+
   void find_arrays(Field& field) {
     if (field.stride == field.width ? field.packed() : field.stride == 1) field.array = static_cast<int>(array_count_);
     if (field.packed() && field.stride == field.width) {
@@ -152,7 +167,7 @@ class StageLayout {
   std::array<Array, max_arrays> arrays_{}, columns_{};
   std::size_t field_count_ = 0, array_count_ = 0, column_count_ = 0;
   int record_width_ = 0;
-  bool one_record_ = false;
+  bool one_record_ = false, has_vertices_ = false;
 };
 
 /// Evaluates a block piece by piece into the stage, and writes each piece to the records of its patches, one patch per
@@ -188,6 +203,7 @@ class StagedBlock {
     const int piece_v = (count_v + parts_v - 1) / parts_v, piece_u = std::max(1, layout_.piece() / count_v);
     Isa isa = Isa::sse2;
     job.lane_count = lane_count;
+    if (is_vertices(job)) return run_vertices(job, first_u, end_u, count_v, records);
     begin(records);
     if (is_mesh(job)) return run_mesh(job, first_u, end_u, count_v, lane_count);
     for (job.u_begin = first_u; job.u_begin < end_u; job.u_begin += piece_u) {
@@ -244,6 +260,25 @@ class StagedBlock {
                                           .streaming = streaming_});
     lines_.end(states_[0], lane_count, streaming_);
     return isa;
+  }
+
+  /// Whether samples go straight to records with a gap: patches must have their parameters in common.
+  bool is_vertices(const kernel::GridJob<T>& job) const {
+    if constexpr (sizeof(T) != 4 || planted_slowdown > 0) return false;
+    return layout_.has_vertices() && !job.by_lane && !job.normal_kind && !job.curvature_kind;
+  }
+  Isa run_vertices(kernel::GridJob<T>& job, int first_u, int end_u, int count_v, const std::ptrdiff_t* records) {
+    job.u_begin = first_u;
+    job.u_end = end_u;
+    job.v_begin = 0;
+    job.v_end = count_v;
+    if constexpr (sizeof(T) == 4) {
+      kernel::RecordJob out;
+      out.stride = out_.position.stride;
+      for (int lane = 0; lane < lanes; ++lane) out.out[lane] = out_.position.component[0] + records[lane] * out.stride;
+      return kernels_.grid_records_f32(job, out);
+    }
+    return Isa::sse2;
   }
 
   /// Points the job at the first free row of each array, after the rows that wait in the stage.

@@ -227,6 +227,18 @@ void run_grid(const KernelTable& table, const Net& net, int order, bool streamin
   if (order >= 2) print_hash(name, "curvature_kind", curvature_kind.data(), scalars);
 }
 
+/// Runs a block's positions and normals into records of eight.
+void run_records(const KernelTable& table, const Net& net) {
+  GridInput<float> input(net, false);
+  const GridJob<float> job = input.job();
+  const std::size_t values = GridInput<float>::scalars / block_lanes * 8;
+  AlignedVector<float> memory(block_lanes * values + 1);
+  RecordJob records;
+  for (std::size_t lane = 0; lane < block_lanes; ++lane) records.out[lane] = memory.data() + 1 + lane * values;
+  table.grid_records_f32(job, records);
+  print_hash("records/" + grid_name("float", net, 1, false, false), "values", memory.data(), memory.size());
+}
+
 template <class T>
 void run_grids(const KernelTable& table) {
   const int degrees[][2] = {{1, 1}, {2, 2}, {3, 3}, {1, 3}, {3, 2}, {4, 4}, {5, 7}, {15, 15}};
@@ -239,6 +251,7 @@ void run_grids(const KernelTable& table) {
             const Net net{degree_u, degree_v, rational, exponent, collapsed};
             for (const bool streaming : {false, true}) run_grid<T>(table, net, order, streaming);
             run_grid<T>(table, net, order, false, true);
+            if (sizeof(T) == 4 && order == 1) run_records(table, net);
           }
 }
 

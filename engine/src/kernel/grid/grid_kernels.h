@@ -71,12 +71,22 @@ struct LineJob;
 /// Rows of the ring through which mesh_lines_f32 sends samples: whole samples, and whole vectors of any width.
 inline constexpr int mesh_line_rows = 96;
 
+/// Records of a block's patches: those of lane l begin at out[l]. A record begins with a position and a normal; what
+/// follows up to its stride is not touched.
+struct RecordJob {
+  float* out[block_lanes] = {};  ///< at any multiple of 4 bytes; lanes beyond GridJob::lane_count repeat one before
+  std::ptrdiff_t stride = 8;     ///< values from one record to the next, at least 6
+};
+
 /// Grid kernels. Each returns its own ISA, which the report passes to the caller.
 struct GridKernels {
   Isa (*grid_f32)(const GridJob<float>&);
   /// Writes positions and normals of bicubic patches, and nothing else, six values per record, as put_lines_f32 does.
   /// `lines.rows` has mesh_line_rows rows, which hold the job's outputs in turn. Null where it would not pay.
   Isa (*mesh_lines_f32)(const GridJob<float>&, const LineJob<float>& lines);
+  /// Writes positions and normals, and nothing else, to records of any stride by plain stores; the job's own outputs
+  /// are not read. The patches have their parameters in common.
+  Isa (*grid_records_f32)(const GridJob<float>&, const RecordJob& records);
 };
 struct DoubleGridKernels {
   Isa (*grid_f64)(const GridJob<double>&);

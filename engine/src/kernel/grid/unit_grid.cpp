@@ -12,6 +12,7 @@ namespace {
 #include "kernel/grid/grid_kernel.inl.h"
 #include "kernel/grid/line_kernel.inl.h"
 #include "kernel/grid/mesh_line_kernel.inl.h"
+#include "kernel/grid/record_kernel.inl.h"
 
 /// Vectors of half a line that are streamed one by one go to memory in halves.
 template <class L>
@@ -28,6 +29,7 @@ constexpr auto mesh_line_kernel() -> Isa (*)(const GridJob<float>&, const LineJo
 extern const GridKernels grid_kernels = {
     evaluate_grid<Lanes<float>>,
     mesh_line_kernel<Lanes<float>>(),
+    grid_records<Lanes<float>>,
 };
 
 }}}}  // namespace tessera::abi_0_1::kernel::TESSERA_ISA_NAMESPACE

@@ -22,7 +22,11 @@ void write_mesh_points(const float* net, float* points) {
 template <class L, int Order>
 class CubicVertices {
  public:
-  explicit CubicVertices(const MeshVertexJob& job) : job_(job), positions_(job.position), normals_(job.normal) {}
+  explicit CubicVertices(const MeshVertexJob& job)
+      : job_(job),
+        positions_(job.position),
+        normals_(job.normal),
+        shared_(Order > 0 && share_records(job.position, job.normal)) {}
 
   void write() {
     if (job_.inner_u > 1) write_inner();
@@ -155,16 +159,21 @@ class CubicVertices {
     const int writable = vertex_ + width <= job_.writable ? width : count;
     Batch p[3];
     copy<L>(sample.position, p);
-    positions_.put(vertex_, p, count, writable);
+    if (!shared_) positions_.put(vertex_, p, count, writable);
     if constexpr (Order > 0) {
       Normal<L> normal;
       unit_normal<L, false>(job_.grid, sample, {vertex_, vertex_ + mesh_tile, 0}, normal);
-      normals_.put(vertex_, normal.direction, count, writable);
+      if (shared_) {
+        put_shared<L>(job_.position, vertex_, sample.position, normal.direction, count);
+      } else {
+        normals_.put(vertex_, normal.direction, count, writable);
+      }
     }
     vertex_ += count;
   }
 
   const MeshVertexJob& job_;
   RecordSink<L> positions_, normals_;
+  const bool shared_;  ///< see share_records()
   int vertex_ = 0;
 };

@@ -116,6 +116,24 @@ class RecordSink {
   std::conditional_t<has_lines<L>, LineSink<L, true>, None> sink_;
 };
 
+/// Whether positions and normals begin common records of a larger stride, as vertices with uv at their end do.
+inline bool share_records(const MeshRecords& position, const MeshRecords& normal) {
+  const auto follows = [&](const float* value, int place) { return value == position.out[0] + place; };
+  return position.stride > 6 && normal.stride == position.stride && follows(position.out[1], 1) &&
+         follows(position.out[2], 2) && follows(normal.out[0], 3) && follows(normal.out[1], 4) &&
+         follows(normal.out[2], 5);
+}
+
+/// Writes the first `count` lanes to such records, from a record on.
+template <class L>
+[[gnu::always_inline]] inline void put_shared(const MeshRecords& out, int record,
+                                              const typename L::Batch (&position)[3],
+                                              const typename L::Batch (&normal)[3], int count) {
+  float unused[6], *to[L::width];
+  for (int l = 0; l < L::width; ++l) to[l] = l < count ? out.out[0] + (record + l) * out.stride : unused;
+  store_sixes<L>(position, normal, to, 0);
+}
+
 template <class L, int Degree, bool Rational, int Order>
 class PatchVertices {
  public:
@@ -327,8 +345,12 @@ class PatchVertices {
 
   /// Writes the stage to the caller's records.
   void flush() {
-    write_records(job_.position, stage_);
-    if constexpr (Order > 0) write_records(job_.normal, stage_ + 3);
+    if (Order > 0 && share_records(job_.position, job_.normal)) {
+      write_shared();
+    } else {
+      write_records(job_.position, stage_);
+      if constexpr (Order > 0) write_records(job_.normal, stage_ + 3);
+    }
     vertex_ += staged_;
     staged_ = 0;
   }
@@ -343,6 +365,15 @@ class PatchVertices {
       sink.put(vertex_ + k, p, count, vertex_ + k + L::width <= job_.writable ? int{L::width} : count);
     }
     sink.stop();
+  }
+
+  void write_shared() const {
+    for (int k = 0; k < staged_; k += L::width) {
+      Batch value[2][3];
+      for (int c = 0; c < outputs; ++c) value[c / 3][c % 3] = Batch::load_unaligned(stage_[c] + k);
+      put_shared<L>(job_.position, vertex_ + k, value[0], value[1],
+                    staged_ - k < L::width ? staged_ - k : int{L::width});
+    }
   }
 
   const MeshVertexJob& job_;

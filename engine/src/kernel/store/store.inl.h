@@ -1,5 +1,5 @@
 #pragma once
-// Stores of vectors and of records of three components.
+// Stores of vectors and of records of three and six components.
 //
 // Needs before it, outside of the instruction set's namespace: kernel/isa/block_lanes.h, kernel/isa/lanes.h.
 
@@ -14,6 +14,23 @@ template <class L, bool Streaming>
 template <class L, bool Streaming>
 [[gnu::always_inline]] inline void store(typename L::Scalar* memory, const typename L::Batch (&vector)[3]) {
   for (int c = 0; c < 3; ++c) store<L, Streaming>(memory + c * block_lanes, vector[c]);
+}
+
+/// Writes six values of each lane, three of `a` and three of `b`, to out[lane] + at.
+template <class L>
+[[gnu::always_inline]] inline void store_sixes(const typename L::Batch (&a)[3], const typename L::Batch (&b)[3],
+                                               float* const* out, std::ptrdiff_t at) {
+  if constexpr (L::width == 4) {
+    typename L::Batch first[4] = {a[0], a[1], a[2], b[0]}, rest[4] = {b[1], b[2], b[1], b[2]};
+    L::transpose(first);
+    L::transpose(rest);
+    for (int l = 0; l < 4; ++l) {
+      first[l].store_unaligned(out[l] + at);
+      __builtin_memcpy(out[l] + at + 4, &rest[l], 2 * sizeof(float));
+    }
+  } else {
+    put_sixes(a, b, out, at);  // of longer vectors: beside their Lanes
+  }
 }
 
 /// The layout of records in memory.
