@@ -45,8 +45,8 @@ struct LineKernels {
 };
 
 /// The order of the values in the stage, and how they get from there to the caller's views:
-/// - no stage for positions and normals in floats that begin records with a gap after them (vertices of position, normal
-///   and uv, say): see GridKernels::grid_records_f32;
+/// - no stage for positions and normals in floats that begin records with a gap after them (vertices of position,
+///   normal and uv, say): see GridKernels::grid_records_f32;
 /// - one array for all views of numbers, if these are the fields of one record without gaps (positions and normals
 ///   interleaved, say);
 /// - otherwise one array for each packed view, and one for each component of a structure of arrays;

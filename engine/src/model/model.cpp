@@ -93,8 +93,7 @@ Result<PatchSet> make_patch_set(const Model& model, std::span<const PatchGrid> g
     if (Status status = check_topology(model); !status.ok()) return status;
     ModelPatches patches(model, options);
     patches.name_edges();
-    for (const PatchGrid& grid : grids)
-      if (Status status = patches.add(grid); !status.ok()) return status;
+    if (Status status = patches.add_grids(grids); !status.ok()) return status;
     return std::move(patches).packed();
   });
 }
@@ -114,6 +113,7 @@ Result<PatchSet> make_patch_set(const Shape& shape, const PatchSetOptions& optio
 Result<PatchSet> make_patch_set(std::span<const PatchGrid> grids, const PatchSetOptions& options) {
   return guarded([&]() -> Result<PatchSet> {
     GatheredPatches all;
+    all.reserve(grids);
     for (std::size_t k = 0; k < grids.size(); ++k) all.add(k, grids[k]);
     return std::move(all).packed(options);
   });

@@ -95,29 +95,37 @@ Result<FaceTrims*> FaceTrimsFinder::find(const Shared<std::vector<TrimLoop>>& lo
   return &known_.emplace(key_of(loops), Known{loops, options, *std::move(trims)})->second.trims;
 }
 
-void GatheredPatches::add(std::size_t surface, PatchGrid grid) {
+void GatheredPatches::add(std::size_t surface, PatchGrid&& grid) {
+  add_sources(surface, grid);
+  std::vector<BezierPatch> added = std::move(grid).take_patches();
+  if (patches.empty())
+    patches = std::move(added);
+  else
+    patches.insert(patches.end(), std::move_iterator(added.begin()), std::move_iterator(added.end()));
+}
+
+void GatheredPatches::add(std::size_t surface, const PatchGrid& grid) {
+  add_sources(surface, grid);
+  patches.insert(patches.end(), grid.patches().begin(), grid.patches().end());
+}
+
+void GatheredPatches::add_sources(std::size_t surface, const PatchGrid& grid) {
   const auto u = grid.breaks_u(), v = grid.breaks_v();
   domains.push_back(grid.domain());
   box.extend(grid.box());
   note_error(grid.fit_error());
-  std::vector<BezierPatch> added = std::move(grid).take_patches();
-  if (patches.empty()) {
-    patches = std::move(added);
-    sources.reserve(patches.size());
-  } else {
-    patches.insert(patches.end(), std::move_iterator(added.begin()), std::move_iterator(added.end()));
-  }
-  std::vector<PatchSource> row;
-  for (std::size_t k = 0; k + 1 < v.size(); ++k)
-    row.push_back({static_cast<std::uint32_t>(surface), {0, 1, v[k], v[k + 1]}});
-  for (std::size_t k = 0; k + 1 < u.size(); ++k) {
-    for (PatchSource& source : row) {
-      source.domain.u0 = u[k];
-      source.domain.u1 = u[k + 1];
-    }
-    sources.insert(sources.end(), row.begin(), row.end());
-  }
+  for (std::size_t i = 0; i + 1 < u.size(); ++i)
+    for (std::size_t j = 0; j + 1 < v.size(); ++j)
+      sources.push_back({static_cast<std::uint32_t>(surface), {u[i], u[i + 1], v[j], v[j + 1]}});
   surface_count = surface + 1;
+}
+
+void GatheredPatches::reserve(std::span<const PatchGrid> grids) {
+  std::size_t count = 0;
+  for (const PatchGrid& grid : grids) count += grid.patches().size();
+  patches.reserve(count);
+  sources.reserve(count);
+  domains.reserve(grids.size());
 }
 
 void GatheredPatches::add_kept(std::size_t surface, const PatchGrid& grid, FaceTrims& face) {
@@ -186,6 +194,23 @@ void ModelPatches::find_loops(std::size_t surface, SurfaceLoops& of) const {
   of.loops = grid_trims(cut);
   // The outline of a quadric has the pace of its edges, which snapping to lines between patches would change.
   of.is_loose = !is_trimmed && !std::holds_alternative<QuadricPiece>(cut.surface);
+}
+
+Status ModelPatches::add_grids(std::span<const PatchGrid> grids) {
+  const auto is_trimmed = [](const ModelSurface& surface) { return !surface.trims->empty(); };
+  if (faces_.empty() && std::ranges::none_of(model_.surfaces, is_trimmed)) all_.reserve(grids);
+  for (const PatchGrid& grid : grids) {
+    SurfaceLoops of;
+    find_loops(ends_.size(), of);
+    if (!of.loops) {
+      all_.add(ends_.size(), grid);
+      ends_.push_back(all_.patches.size());
+    } else {
+      of.grid = grid;
+      if (Status status = add(std::move(of)); !status.ok()) return status;
+    }
+  }
+  return {};
 }
 
 Status ModelPatches::add(PatchGrid grid) {

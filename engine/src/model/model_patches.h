@@ -68,11 +68,17 @@ struct GatheredPatches {
   FitError fit_error;
   PatchTrims trims;
 
-  void add(std::size_t surface, PatchGrid grid);
+  void add(std::size_t surface, PatchGrid&& grid);
+  void add(std::size_t surface, const PatchGrid& grid);
+  /// Makes room for whole grids.
+  void reserve(std::span<const PatchGrid> grids);
   /// Adds what a face keeps of its patches.
   void add_kept(std::size_t surface, const PatchGrid& grid, FaceTrims& face);
   void note_error(const FitError& error);
   Result<PatchSet> packed(PatchSetOptions options) &&;
+
+ private:
+  void add_sources(std::size_t surface, const PatchGrid& grid);
 };
 
 /// Gathers the patches of a model's surfaces one by one.
@@ -88,6 +94,8 @@ class ModelPatches {
   void name_edges();
   /// Adds the next surface's patches.
   Status add(PatchGrid grid);
+  /// Adds the next surfaces' patches, and copies no grid of those that have no loops.
+  Status add_grids(std::span<const PatchGrid> grids);
   /// Passes the next surface if it is a patch, unplaced and uncut. Returns whether it is; the others are left to add().
   bool pass_whole_patch();
   /// Converts all surfaces of the model and adds their patches.

@@ -135,26 +135,6 @@ struct Lanes<float> {
     for (int k = 0; k < 4; ++k) column[k] = load_fours(row(k), row(4 + k));
     transpose_fours(column);
   }
-  /// Writes six values of each lane, three of `a` and three of `b`, to out[lane] + at.
-  [[gnu::always_inline]] static void store_sixes(const Batch (&a)[3], const Batch (&b)[3], float* const* out,
-                                                 std::ptrdiff_t at) {
-    Batch four[4] = {a[0], a[1], a[2], b[0]};
-    transpose_fours(four);  // half h of four[l] is lane 4 h + l
-    const __m256 two[2] = {_mm256_unpacklo_ps(b[1], b[2]), _mm256_unpackhi_ps(b[1], b[2])};
-    const auto put = [&](auto half) __attribute__((always_inline)) {
-      constexpr int h = decltype(half)::value;
-      for (int l = 0; l < 4; l += 2) {
-        const __m128 pair = _mm256_extractf128_ps(two[l / 2], h);
-        float *const even = out[4 * h + l] + at, *const odd = out[4 * h + l + 1] + at;
-        _mm_storeu_ps(even, _mm256_extractf128_ps(four[l], h));
-        _mm_storel_pi(reinterpret_cast<__m64*>(even + 4), pair);
-        _mm_storeu_ps(odd, _mm256_extractf128_ps(four[l + 1], h));
-        _mm_storeh_pi(reinterpret_cast<__m64*>(odd + 4), pair);
-      }
-    };
-    put(Bits<0>());
-    put(Bits<1>());
-  }
   static void transpose(Batch (&row)[width]) {
     Batch upper[4] = {row[0], row[1], row[2], row[3]}, lower[4] = {row[4], row[5], row[6], row[7]};
     transpose_fours(upper);
@@ -165,6 +145,27 @@ struct Lanes<float> {
     }
   }
 };
+
+/// Writes six values of each lane, three of `a` and three of `b`, to out[lane] + at.
+[[gnu::always_inline]] inline void put_sixes(const Lanes<float>::Batch (&a)[3], const Lanes<float>::Batch (&b)[3],
+                                             float* const* out, std::ptrdiff_t at) {
+  Lanes<float>::Batch four[4] = {a[0], a[1], a[2], b[0]};
+  Lanes<float>::transpose_fours(four);  // half h of four[l] is lane 4 h + l
+  const __m256 two[2] = {_mm256_unpacklo_ps(b[1], b[2]), _mm256_unpackhi_ps(b[1], b[2])};
+  const auto put = [&](auto half) __attribute__((always_inline)) {
+    constexpr int h = decltype(half)::value;
+    for (int l = 0; l < 4; l += 2) {
+      const __m128 pair = _mm256_extractf128_ps(two[l / 2], h);
+      float *const even = out[4 * h + l] + at, *const odd = out[4 * h + l + 1] + at;
+      _mm_storeu_ps(even, _mm256_extractf128_ps(four[l], h));
+      _mm_storel_pi(reinterpret_cast<__m64*>(even + 4), pair);
+      _mm_storeu_ps(odd, _mm256_extractf128_ps(four[l + 1], h));
+      _mm_storeh_pi(reinterpret_cast<__m64*>(odd + 4), pair);
+    }
+  };
+  put(Bits<0>());
+  put(Bits<1>());
+}
 
 template <>
 struct Lanes<double> {

@@ -153,29 +153,6 @@ struct Lanes<float> {
       column[4 + l] = _mm512_shuffle_f32x4(a[l], a[4 + l], 0xdd);
     }
   }
-  /// Writes six values of each lane, three of `a` and three of `b`, to out[lane] + at.
-  [[gnu::always_inline]] static void store_sixes(const Batch (&a)[3], const Batch (&b)[3], float* const* out,
-                                                 std::ptrdiff_t at) {
-    const __m512 xy_low = _mm512_unpacklo_ps(a[0], a[1]), xy_high = _mm512_unpackhi_ps(a[0], a[1]);
-    const __m512 zx_low = _mm512_unpacklo_ps(a[2], b[0]), zx_high = _mm512_unpackhi_ps(a[2], b[0]);
-    // Quarter q of four[l] is lane 4 q + l; that of two[l / 2] holds lanes 4 q + l and the next.
-    const __m512 four[4] = {_mm512_shuffle_ps(xy_low, zx_low, 0x44), _mm512_shuffle_ps(xy_low, zx_low, 0xee),
-                            _mm512_shuffle_ps(xy_high, zx_high, 0x44), _mm512_shuffle_ps(xy_high, zx_high, 0xee)};
-    const __m512 two[2] = {_mm512_unpacklo_ps(b[1], b[2]), _mm512_unpackhi_ps(b[1], b[2])};
-    const auto put = [&](auto quarter) __attribute__((always_inline)) {
-      constexpr int q = decltype(quarter)::value;
-      for (int l = 0; l < 4; ++l) _mm_storeu_ps(out[4 * q + l] + at, _mm512_extractf32x4_ps(four[l], q));
-      for (int l = 0; l < 4; l += 2) {
-        const __m128 pair = _mm512_extractf32x4_ps(two[l / 2], q);
-        _mm_storel_pi(reinterpret_cast<__m64*>(out[4 * q + l] + at + 4), pair);
-        _mm_storeh_pi(reinterpret_cast<__m64*>(out[4 * q + l + 1] + at + 4), pair);
-      }
-    };
-    put(std::integral_constant<int, 0>());
-    put(std::integral_constant<int, 1>());
-    put(std::integral_constant<int, 2>());
-    put(std::integral_constant<int, 3>());
-  }
   static void transpose(Batch (&row)[width]) {
     __m512 a[16], b[16];
     for (int i = 0; i < 16; i += 2) {  // pairs of rows
@@ -200,6 +177,30 @@ struct Lanes<float> {
     }
   }
 };
+
+/// Writes six values of each lane, three of `a` and three of `b`, to out[lane] + at.
+[[gnu::always_inline]] inline void put_sixes(const Lanes<float>::Batch (&a)[3], const Lanes<float>::Batch (&b)[3],
+                                             float* const* out, std::ptrdiff_t at) {
+  const __m512 xy_low = _mm512_unpacklo_ps(a[0], a[1]), xy_high = _mm512_unpackhi_ps(a[0], a[1]);
+  const __m512 zx_low = _mm512_unpacklo_ps(a[2], b[0]), zx_high = _mm512_unpackhi_ps(a[2], b[0]);
+  // Quarter q of four[l] is lane 4 q + l; that of two[l / 2] holds lanes 4 q + l and the next.
+  const __m512 four[4] = {_mm512_shuffle_ps(xy_low, zx_low, 0x44), _mm512_shuffle_ps(xy_low, zx_low, 0xee),
+                          _mm512_shuffle_ps(xy_high, zx_high, 0x44), _mm512_shuffle_ps(xy_high, zx_high, 0xee)};
+  const __m512 two[2] = {_mm512_unpacklo_ps(b[1], b[2]), _mm512_unpackhi_ps(b[1], b[2])};
+  const auto put = [&](auto quarter) __attribute__((always_inline)) {
+    constexpr int q = decltype(quarter)::value;
+    for (int l = 0; l < 4; ++l) _mm_storeu_ps(out[4 * q + l] + at, _mm512_extractf32x4_ps(four[l], q));
+    for (int l = 0; l < 4; l += 2) {
+      const __m128 pair = _mm512_extractf32x4_ps(two[l / 2], q);
+      _mm_storel_pi(reinterpret_cast<__m64*>(out[4 * q + l] + at + 4), pair);
+      _mm_storeh_pi(reinterpret_cast<__m64*>(out[4 * q + l + 1] + at + 4), pair);
+    }
+  };
+  put(std::integral_constant<int, 0>());
+  put(std::integral_constant<int, 1>());
+  put(std::integral_constant<int, 2>());
+  put(std::integral_constant<int, 3>());
+}
 
 template <>
 struct Lanes<double> {

@@ -29,7 +29,7 @@ template <class L>
       __builtin_memcpy(out[l] + at + 4, &rest[l], 2 * sizeof(float));
     }
   } else {
-    L::store_sixes(a, b, out, at);
+    put_sixes(a, b, out, at);  // of longer vectors: beside their Lanes
   }
 }
 
