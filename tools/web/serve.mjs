@@ -54,7 +54,7 @@ const modelOf = (model, path) => (model && path === `/model/${basename(model)}` 
 
 /** Makes the server. `model`: a file that is served as /model/NAME. */
 export function serverOf({ folders = foldersOf(), model = null } = {}) {
-  return createServer((request, response) => {
+  const serve = (request, response) => {
     const answer = (status, text) => response.writeHead(status, { ...headers, 'Content-Type': 'text/plain' }).end(text);
     // Another site whose name leads to this machine is not served.
     const isOwn = /^(localhost|127\.0\.0\.1|\[::1\])(:\d+)?$/.test(request.headers.host ?? '');
@@ -74,6 +74,14 @@ export function serverOf({ folders = foldersOf(), model = null } = {}) {
     response.writeHead(200, { ...headers, 'Content-Type': type, 'Content-Length': size });
     if (request.method === 'HEAD') return response.end();
     return createReadStream(file).on('error', () => response.destroy()).pipe(response);
+  };
+  return createServer((request, response) => {
+    try {
+      serve(request, response);
+    } catch {  // a file that went meanwhile, or an address without a path
+      if (!response.headersSent) response.writeHead(404, headers);
+      response.end();
+    }
   });
 }
 

@@ -99,11 +99,11 @@ export class Mesh {
   get trianglePatches() { return this.#array('trianglePatches', Uint32Array); }
   get edges() {
     void this[its.struct];
-    return this.#edges;
+    return this.#edges?.slice() ?? null;
   }
   copy() {
     const lists = Object.fromEntries(Object.keys(arrays).map((name) => [name, this[name]?.slice() ?? null]));
-    return { ...lists, edges: this.edges?.slice() ?? null, origin: [...this.origin] };
+    return { ...lists, edges: this.edges, origin: [...this.origin] };
   }
 
   [its.takeEdges](plan) {

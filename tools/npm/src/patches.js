@@ -49,7 +49,7 @@ export class Patches extends Handle {
 
   /** The surface of each patch. */
   get surfaces() {
-    if (this.#surfaces) return this.#surfaces;
+    if (this.#surfaces) return this.#surfaces.slice();
     const module = this[its.module], handle = this[its.handle], found = new Uint32Array(this.count);
     module.scratch(({ struct }) => {
       const info = struct('tsr_patch_info');
@@ -58,7 +58,7 @@ export class Patches extends Handle {
         found[k] = module.get(info, 'surface');
       }
     });
-    return (this.#surfaces = found);
+    return (this.#surfaces = found).slice();
   }
 
   patch(index) {

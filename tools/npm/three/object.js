@@ -90,7 +90,7 @@ export class ModelObject extends Group {
   }
   /** Plans anew at the next update(): after edits of the patches, or another `pixels`. */
   async invalidate() {
-    await this.#running;
+    while (this.#running) await this.#running;
     this.#plan?.dispose();
     this.#plan = this.shown = null;
   }
@@ -103,6 +103,8 @@ export class ModelObject extends Group {
         await this.#follow(view, key);
         resolve(!this.#isDisposed);
       } catch (error) {
+        this.#plan?.dispose();  // which may be without its mesh now
+        this.#plan = null;
         reject(error);
       }
     }
@@ -121,7 +123,11 @@ export class ModelObject extends Group {
     const arrays = await arraysOf(this.#mesh), numbers = numbersOf(this.#plan);
     const milliseconds = performance.now() - start;
     const surfaces = surfacesOf(arrays, this.#patchSurfaces);
-    const curvatures = await this.#curvatures(arrays, surfaces);
+    let curvatures, kind;
+    do {  // another kind may be chosen meanwhile
+      kind = this.colours;
+      curvatures = await this.#curvatures(arrays, surfaces);
+    } while (kind !== this.colours && !this.#isDisposed);
     if (this.#isDisposed) return;
     this.#arrays = arrays;
     this.#surfaces = surfaces;

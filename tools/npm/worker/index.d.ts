@@ -47,7 +47,10 @@ export interface Scene extends Remote<core.Scene, 'info', 'closest'> {
   ): Promise<Pick<core.Hits, Q>>;
 }
 export interface Tessera extends Remote<core.Tessera, 'memoryBytes'> {
-  /** Ends the worker and all its objects; calls that wait or run are rejected with `cancelled`. */
+  /**
+   * Ends the worker and all its objects. The call that runs is rejected with `cancelled`, those that wait with
+   * `invalid_handle`.
+   */
   terminate(): void;
 }
 interface Class<T> { new (...values: never[]): T; readonly prototype: T }

@@ -132,11 +132,15 @@ export class Line {
     }
     if (this.#running !== entry) return;  // ended meanwhile
     entry.worker = this.#worker;
-    this.#worker.ref?.();
     const { number, name, values, released, run } = entry;
     // An object that the call makes has the call's number.
     const message = { number, target: entry.object?.id, name, values, released, run };
-    this.#worker.postMessage(message, [...entry.transfer ?? []]);
+    try {
+      this.#worker.postMessage(message, [...entry.transfer ?? []]);
+      this.#worker.ref?.();
+    } catch (error) {  // an argument that cannot be sent, such as a promise
+      this.#settle(entry, () => entry.reject(new TesseraError('invalid_argument', `${name}: ${error.message}`)));
+    }
   }
   #settle(entry, settle) {
     entry.signal?.removeEventListener('abort', entry.abort);

@@ -69,7 +69,7 @@ export class Document {
   /** Reads a source { name, bytes() }; `progress(words, share)` is told how far it is. */
   static async open(source, { signal, progress }) {
     hasOpened = true;
-    const bytes = await source.bytes();
+    const bytes = await source.bytes(signal);
     const tessera = await workers.take();
     try {
       return await within(signal, tessera, async () => {
@@ -88,11 +88,9 @@ export class Document {
       { progress: (share) => progress('Reading', 0.7 * share) }));
     const patches = (this.#patches = await model.patches(
       { progress: (share) => progress('Preparing', 0.7 + 0.3 * share) }));
-    const object = ModelObject.make(model, patches);
-    [this.warnings, this.instances, this.shapes] =
-      await Promise.all([model.warnings, model.instances(), model.shapes()]);
+    [this.warnings, this.instances, this.shapes, this.object] = await Promise.all(
+      [model.warnings, model.instances(), model.shapes(), ModelObject.make(model, patches)]);
     Object.assign(this, { unit: model.unit, box: patches.box, patchCount: patches.count, cutCount: patches.cutCount });
-    this.object = await object;
     this.faces = this.object.faces;
   }
 

@@ -72,19 +72,21 @@ async function take(next) {
   const colouring = viewer.mode === 'curvature' ? $('curvature').value : 'surface';
   next.object.colours = colouring;
   numbers = new Numbers($('numbers'), next, measure);
+  parts = new Parts($('parts'), next, { select, hide, zoom });
+  showFace($('face'), next, null);
   open = next;
   $('main').classList.remove('is-empty');
   try {
     await viewer.show(next.object, next.box);
   } catch (error) {
+    if (open !== next) return;
     forget(next);
     throw error;
   } finally {
     former?.close();
   }
+  if (open !== next) return;  // another file came meanwhile
   performance.measure('picture', 'open');
-  parts = new Parts($('parts'), next, { select, hide, zoom });
-  showFace($('face'), next, null);
   showLegend();
   $('file').textContent = document.title = next.name;
   for (const id of ['save', 'fit', 'modes']) $(id).disabled = false;
@@ -93,13 +95,15 @@ async function take(next) {
 }
 
 /** Goes back to an empty page: the model could be read, but no picture be made. */
-function forget(document) {
+function forget(former) {
   viewer.clear();
   viewer.redraw();
-  document.close();
+  former.close();
   open = null;
   $('main').classList.add('is-empty');
   $('file').textContent = 'No file open';
+  document.title = 'Tessera';
+  for (const id of ['face', 'numbers', 'parts']) $(id).replaceChildren();
   for (const id of ['save', 'fit', 'modes']) $(id).disabled = true;
   $('proof').hidden = $('legend').hidden = true;
 }
@@ -247,6 +251,7 @@ $('dismiss').addEventListener('click', forgive);
 $('fit').addEventListener('click', () => viewer.look([0.62, -1, 0.62]));
 $('help').addEventListener('click', () => $('keys').showModal());
 $('save').addEventListener('click', askTolerance);
+$('unsaved').addEventListener('click', () => $('saving').close('cancel'));
 $('saving').addEventListener('close', () => $('saving').returnValue === 'save' && save());
 $('modes').addEventListener('change', (event) => setMode(event.target.value));
 $('curvature').addEventListener('change', () => setMode('curvature'));

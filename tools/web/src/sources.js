@@ -6,8 +6,8 @@ const ofBlob = (name, blob) => ({ name, bytes: async () => new Uint8Array(await 
 function ofAddress(address, name) {
   return {
     name,
-    bytes: async () => {
-      const response = await fetch(address);
+    bytes: async (signal) => {
+      const response = await fetch(address, { signal });
       if (!response.ok) throw new Error(`${name}: the server has no such file, it answers ${response.status}`);
       return new Uint8Array(await response.arrayBuffer());
     },

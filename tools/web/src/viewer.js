@@ -41,6 +41,7 @@ export class Viewer {
   #centre = new Vector3();
   #radius = 1;
   #mode = 'edges';
+  #motion = null;
   #frame = 0;
   #drawn = 0;  // when
   #flight = null;
@@ -128,7 +129,9 @@ export class Viewer {
   #move(position, target, isSmooth) {
     const controls = this.#controls, camera = this.#camera;
     const start = performance.now(), from = { position: camera.position.clone(), target: controls.target.clone() };
+    const motion = (this.#motion = {});  // a later one ends it
     const step = () => {
+      if (motion !== this.#motion) return;
       const share = isSmooth ? Math.min((performance.now() - start) / 260, 1) : 1, eased = share * (2 - share);
       camera.position.lerpVectors(from.position, position, eased);
       controls.target.lerpVectors(from.target, target, eased);
