@@ -49,6 +49,17 @@ test('results are those of the core', async () => {
   assert.deepEqual(await scene.info, own.rays().info);
 });
 
+test('lists are copies each time, and arguments that cannot be sent are errors of their call alone', async () => {
+  const model = await (await start()).open('block.step', block), patches = await model.patches();
+  const own = (await load()).read('block.step', block).patches(), ownMesh = own.plan({ tolerance: 1, edges: true }).write();
+  own.surfaces.fill(7), ownMesh.edges.fill(7);
+  for (let k = 0; k < 3; ++k) assert.deepEqual(await patches.surfaces, own.surfaces);
+  const plan = await patches.plan({ tolerance: 1, edges: true });
+  assert.equal(await codeOf(() => plan.write(plan.write())), 'invalid_argument');
+  const mesh = await plan.write();
+  for (let k = 0; k < 3; ++k) assert.deepEqual(await mesh.edges, ownMesh.edges);
+});
+
 test('edits and updates change the values of their objects', async () => {
   const patches = await (await (await start()).bspline([square])).patches();
   const plan = await patches.plan({ tolerance: 0.1, headroom: 0.5 }), mesh = await plan.write();

@@ -257,6 +257,27 @@ async function measures({ assert, browser, server }) {
   await tab.wait(() => [...document.querySelectorAll('dt')].some((each) => each.textContent === 'Area'));
   assert.match(await tab.row('Area'), /mm² ± /);
   assert.match(await tab.row('Volume'), /mm³ ± /);
+  // A formula is fitted: what is measured of the fit has no bound.
+  await tab.dropFile(modelAt('seashell.json'));
+  await tab.shown('seashell.json');
+  assert.match(await tab.row('Fit'), /^within /);
+  await tab.page.click('#measure');
+  await tab.wait(() => [...document.querySelectorAll('dt')].some((each) => each.textContent === 'Area'));
+  assert.match(await tab.row('Area'), /^≈ [\d.]+$/);
+  assert.deepEqual(tab.faults, []);
+}
+
+/** A file that comes while the first picture of another is planned. */
+async function comesMeanwhile({ assert, browser, server }) {
+  const tab = await opened(browser, server.address, 'teapot.bpt');
+  await tab.drop('slow.json', slowFile());
+  await tab.wait(() => document.querySelectorAll('#parts input').length !== 32);  // the teapot's
+  await tab.key('Escape');
+  await tab.dropFile(modelAt('torus.json'));
+  await tab.shown('torus.json');
+  await new Promise((resolve) => setTimeout(resolve, 500));
+  assert.equal(await tab.evaluate(() => document.getElementById('main').classList.contains('is-empty')), false);
+  assert.equal(await tab.evaluate(() => document.querySelectorAll('#parts input').length), 1);
   assert.deepEqual(tab.faults, []);
 }
 
@@ -317,6 +338,6 @@ async function audit({ assert, browser, server }) {
 }
 
 export const cases = {
-  dropAndFollow, pickExactly, modes, tree, save, errors, keyboard, touch, colours, sources, measures, cancelAndClose,
-  serverIsClosed, audit,
+  dropAndFollow, pickExactly, modes, tree, save, errors, keyboard, touch, colours, sources, measures,
+  comesMeanwhile, cancelAndClose, serverIsClosed, audit,
 };

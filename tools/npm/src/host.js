@@ -69,7 +69,7 @@ export async function compiled(source) {
 }
 /** What addresses are relative to: the page, or the working folder. */
 function base() {
-  return globalThis.document?.baseURI ?? globalThis.location?.href ?? `file://${globalThis.process?.cwd() ?? ''}/`;
+  return globalThis.document?.baseURI ?? globalThis.location?.href ?? `file://${(globalThis.process?.cwd() ?? '').replace(/[%?#]/g, encodeURIComponent)}/`;
 }
 
 async function compiledAt(url) {

@@ -84,6 +84,7 @@ function tessellated(model, title) {
       try {
         remake(view);
       } catch (error) {
+        isForView = false;  // the mesh may be none now
         caption.textContent = `${title}: ${error.message}`;
         return false;
       }

@@ -52,12 +52,13 @@ def page_of(caption: str, data: dict[str, Any], script: str) -> str:
     """Returns a page that shows the meshes of a source, which ``script`` makes of ``data``."""
     import html
     import json
+    import re
 
     template = pathlib.Path(__file__).with_name("view.html").read_text(encoding="utf-8")
     text = json.dumps(data).replace("<", "\\u003c")  # no name ends the script
-    for mark, value in (("@CAPTION@", html.escape(caption)), ("@LIVE@", script), ("@DATA@", text)):
-        template = template.replace(mark, value, 1)
-    return template
+    values = {"@CAPTION@": html.escape(caption), "@LIVE@": script, "@DATA@": text}
+    # In one pass: a name may hold a mark.
+    return re.sub("|".join(values), lambda mark: values[mark[0]], template)
 
 
 def view_of(

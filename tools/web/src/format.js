@@ -18,7 +18,7 @@ const superscript = (power) => [...power].map((each) => '⁰¹²³⁴⁵⁶⁷�
 
 export const withUnit = (text, unit, power = 1) => (unit ? `${text} ${unit}${['', '', '²', '³'][power]}` : text);
 export const length = (number, unit, digits) => withUnit(short(number, digits), unit);
-/** A value and how far off it may be, to as many digits as are proven, twelve at most. */
+/** A value and how far off it may be, to as many digits as are proven, nine at most. */
 export function proven(value, error, unit, power) {
   const ratio = Math.abs(value) / error;
   const digits = Math.min(Math.max(Math.floor(Math.log10(ratio)) + 1, 2), 9);

@@ -2,6 +2,7 @@
 import { compile, init } from 'tessera/worker';
 import { ModelObject } from 'tessera/three';
 
+const degenerateNormal = 2;  // TSR_HIT_DEGENERATE_NORMAL
 const moduleAddress = new URL('../tessera/tessera.wasm', import.meta.url);
 
 /** Keeps one worker ready, so that a file is read at once. */
@@ -82,7 +83,8 @@ export class Document {
     }
   }
   async #read(tessera, source, bytes, progress) {
-    Object.assign(this, { source, name: source.name });
+    // What is measured later is what was read, wherever the file is by then.
+    Object.assign(this, { name: source.name, file: new Blob([bytes]) });
     this.#tessera = tessera;
     const model = (this.#model = await tessera.open(source.name, bytes,
       { progress: (share) => progress('Reading', 0.7 * share) }));
@@ -90,7 +92,8 @@ export class Document {
       { progress: (share) => progress('Preparing', 0.7 + 0.3 * share) }));
     [this.warnings, this.instances, this.shapes, this.object] = await Promise.all(
       [model.warnings, model.instances(), model.shapes(), ModelObject.make(model, patches)]);
-    Object.assign(this, { unit: model.unit, box: patches.box, patchCount: patches.count, cutCount: patches.cutCount });
+    Object.assign(this, { unit: model.unit, box: patches.box, patchCount: patches.count, cutCount: patches.cutCount,
+      fitError: patches.fitError });
     this.faces = this.object.faces;
   }
 
@@ -108,28 +111,30 @@ export class Document {
     }
     return null;
   }
-  async #describe({ surface: [surface], uv: [u, v], position, normal }) {
+  async #describe({ surface: [surface], uv: [u, v], position, normal, flags: [flags] }) {
     const names = ['firstCurvature', 'secondCurvature', 'gaussian', 'mean'];
     const found = await this.#patches.evaluate(surface, u, v, names);
     const curvatures = Object.fromEntries(Object.entries(found).map(([name, [value]]) => [name, value]));
-    return { surface, u, v, position: Array.from(position), normal: Array.from(normal), ...curvatures };
+    const isPole = (flags & degenerateNormal) !== 0;
+    return { surface, u, v, isPole, position: Array.from(position), normal: Array.from(normal), ...curvatures };
   }
 
   /** The bytes of a .glb file within a tolerance. */
   async save(tolerance) {
     const plan = await this.#patches.plan({ tolerance });
-    const mesh = await plan.write();
+    let mesh;
     try {
+      mesh = await plan.write();
       return await mesh.save('glb');
     } finally {
-      mesh.dispose();
+      mesh?.dispose();
       plan.dispose();
     }
   }
 
   /** Measures in a worker of its own, so that the picture keeps moving. */
   async measure({ signal, progress }) {
-    const bytes = await this.source.bytes(), tessera = await workers.take();
+    const bytes = new Uint8Array(await this.file.arrayBuffer()), tessera = await workers.take();
     try {
       return await within(signal, tessera, async () => {
         const model = await tessera.open(this.name, bytes, { progress: (share) => progress(0.2 * share) });

@@ -1,5 +1,5 @@
 // What is said about a model beside its picture: the face that is picked, numbers, and parts.
-import { count, counted, element, length, proven, short, terms } from './format.js';
+import { count, counted, element, length, proven, short, terms, withUnit } from './format.js';
 import { plainName } from './parts.js';
 
 const quiet = (text) => element('p', { className: 'quiet' }, text);
@@ -16,22 +16,26 @@ function swatch(colour) {
   const code = colour.slice(0, 3).map((value) => Math.round(255 * value).toString(16).padStart(2, '0')).join('');
   return element('span', {}, mark, `#${code}`);
 }
-function radius(curvature, scale, unit) {
-  return Math.abs(curvature) * scale < 1e-9 ? 'flat' : length(1 / curvature, unit, 5);
+/** Both radii of curvature; those of a fitted surface are the fit's. */
+function radiiOf({ firstCurvature, secondCurvature, isPole }, { diagonal, unit, fitError }) {
+  if (isPole) return 'none at a pole';
+  const radius = (curvature) =>
+    (Math.abs(curvature) * diagonal < 1e-9 ? 'flat' : length(1 / curvature, unit, fitError > 0 ? 3 : 5));
+  return `${fitError > 0 ? 'about ' : ''}${radius(firstCurvature)}; ${radius(secondCurvature)}`;
 }
 
 /** The rows of a face that was picked. */
 export function showFace(place, document, hit) {
   if (!hit) return place.replaceChildren(quiet('Click a face, or press Enter in the picture.'));
-  const face = document.faces[hit.surface], { unit } = document, scale = document.diagonal;
+  const face = document.faces[hit.surface];
   const instance = face.instance === null ? null : plainName(document.instances[face.instance].name);
   place.replaceChildren(terms([
     ['Name', plainName(face.name) ?? 'none'], ['Part', instance], ['Colour', swatch(face.colour)],
     ['Surface', `${face.kind}, number ${count(hit.surface)}`],
     ['u, v', `${short(hit.u, 7)}, ${short(hit.v, 7)}`],
     ['Point', point(hit.position, 7)], ['Normal', point(hit.normal, 4)],
-    ['Radii', `${radius(hit.firstCurvature, scale, unit)}; ${radius(hit.secondCurvature, scale, unit)}`],
-    ['Mean', short(hit.mean)], ['Gaussian', short(hit.gaussian)],
+    ['Radii', radiiOf(hit, document)],
+    ['Mean', hit.isPole ? null : short(hit.mean)], ['Gaussian', hit.isPole ? null : short(hit.gaussian)],
   ]));
 }
 
@@ -43,13 +47,14 @@ export class Numbers {
   #measures;
 
   constructor(place, document, onMeasure) {
-    const { faces, instances, shapes, patchCount, cutCount, unit, warnings, box } = document;
+    const { faces, instances, shapes, patchCount, cutCount, unit, warnings, box, fitError } = document;
     const row = (name) => (this.#rows[name] = element('span'));
-    this.unit = unit;
+    Object.assign(this, { unit, isFitted: fitError > 0 });
     this.#measures = element('div', { id: 'measures' });
     const size = box.high.map((high, k) => short(high - box.low[k])).join(' × ');
     place.replaceChildren(terms([
       ['Picture', row('pixels')], ['Bound', row('bound')], ['Gap', row('gap')], ['Mesh', row('closed')],
+      ['Fit', fitError > 0 ? `within ${length(fitError, unit, 2)}` : null],
       ['Triangles', row('triangles')], ['Plan', row('time')],
       ['Size', unit ? `${size} ${unit}` : size], ['Unit', unit || 'none stated'], ['Faces', count(faces.length)],
       ['Parts', instances.length ? `${count(instances.length)} of ${counted(shapes.length, 'shape')}` : null],
@@ -82,13 +87,17 @@ export class Numbers {
     this.#measures.querySelector('progress').value = share;
   }
   showMeasures({ area, areaError, bodies, isProven }) {
-    const { unit } = this, rows = [['Area', proven(area, areaError, unit, 2)]];
+    // The errors are those of a fit's measures, and not of the fit.
+    const { unit, isFitted } = this, value = (number, error, power) =>
+      (isFitted ? `≈ ${withUnit(short(number, 5), unit, power)}` : proven(number, error, unit, power));
+    const rows = [['Area', value(area, areaError, 2)]];
     const closedBodies = bodies.filter((body) => Number.isFinite(body.volume));
     const sum = (name) => closedBodies.reduce((total, body) => total + body[name], 0);
-    if (closedBodies.length) rows.push(['Volume', proven(sum('volume'), sum('volumeError'), unit, 3)]);
+    if (closedBodies.length) rows.push(['Volume', value(sum('volume'), sum('volumeError'), 3)]);
     rows.push(['Bodies', bodies.length ? count(bodies.length) : 'none: the faces enclose no volume']);
     const areAll = isProven && bodies.every((body) => body.isProven);
-    rows.push(['Bounds', areAll ? 'proven' : 'estimated, since trimming curves or gaps are']);
+    rows.push(['Bounds', isFitted ? 'none: of fitted surfaces'
+      : areAll ? 'proven' : 'estimated, since trimming curves or gaps are']);
     this.#measures.replaceChildren(terms(rows));
   }
   showMeasureError(sentence) { this.#measures.replaceChildren(quiet(sentence)); }

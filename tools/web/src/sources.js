@@ -26,9 +26,14 @@ function nameOfText(text) {
 export function sourceOfAddress() {
   const asked = new URLSearchParams(location.search).get('model');
   if (!asked) return null;
-  const address = new URL(asked, location.href);
-  const name = decodeURIComponent(address.pathname.split('/').at(-1));
-  return address.origin === location.origin ? ofAddress(address, name) : null;
+  const refused = { name: asked, bytes: async () => { throw new Error(`${asked}: expected a file of this server`); } };
+  try {
+    const address = new URL(asked, location.href);
+    if (address.origin !== location.origin) return refused;
+    return ofAddress(address, decodeURIComponent(address.pathname.split('/').at(-1)));
+  } catch {
+    return refused;
+  }
 }
 
 /** Calls `open(source)` for each file that comes, `say(sentence)` if what comes is none. */
