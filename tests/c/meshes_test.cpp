@@ -92,6 +92,11 @@ TEST(CMesh, EdgesOfShapesAsLines) {
   EXPECT_EQ(lines, borders_of(memory, segment));
   expect_c_error(tsr_plan_edges(plan_of(set.get(), 1e-3).get(), nullptr, 0, &count), TSR_INVALID_ARGUMENT,
                  "without TSR_PLAN_EDGES");
+  tsr_plan_options both;
+  tsr_plan_defaults(&both);
+  both.tolerance = 1e-3, both.flags = TSR_PLAN_EDGES | TSR_PLAN_APART;
+  tsr_plan* none = nullptr;
+  expect_c_error(tsr_plan_new(&none, set.get(), &both, nullptr), TSR_INVALID_ARGUMENT, "one of both");
 }
 
 TEST(CMesh, OptionsOfEveryKind) {

@@ -23,9 +23,9 @@ typedef struct tsr_face_info {
 tsr_status tsr_model_face(const tsr_model* model, size_t surface, tsr_face_info* info);
 
 /* Writes the edges of shapes as lines from vertex to vertex of the mesh, two indices each: every edge once, with the
- * vertices of one of its faces. *count: how many lines there are. `vertices`: NULL: none is written; else room for
- * 2 * `capacity` indices. Errors, with *count set: TSR_BUFFER_TOO_SMALL. TSR_INVALID_ARGUMENT (a plan without
- * TSR_PLAN_EDGES). */
+ * vertices of one of its faces. Plans by rates, and sets made with TSR_SET_WHOLE, have none. *count: how many lines
+ * there are. `vertices`: NULL: none is written; else room for 2 * `capacity` indices. Errors, with *count set:
+ * TSR_BUFFER_TOO_SMALL. TSR_INVALID_ARGUMENT (a plan without TSR_PLAN_EDGES). */
 tsr_status tsr_plan_edges(const tsr_plan* plan, uint32_t* vertices, size_t capacity, size_t* count);
 
 #pragma GCC visibility pop

@@ -31,6 +31,8 @@ CStatus read_options(const tsr_plan_options& from, TessellationOptions& to) {
                                   TSR_PLAN_UV_UNIT | TSR_PLAN_UV_PATCH | TSR_PLAN_EDGES;
   if (from.flags & ~known) return bad("tsr_plan_options: flags has bits that mean nothing");
   const auto has = [&](std::uint32_t flag) { return (from.flags & flag) != 0; };
+  if (has(TSR_PLAN_EDGES) && has(TSR_PLAN_APART))
+    return bad("tsr_plan_options: edges are wanted, and that faces do not share them: set one of both flags");
   if (from.rate_u != 0 || from.rate_v != 0) to.rates = UniformRates{from.rate_u, from.rate_v};
   if (from.tolerance != 0) to.tolerance = from.tolerance;
   if (from.angle != 0) to.angle = from.angle;

@@ -17,6 +17,7 @@
 #include "io/step/step_tree.h"
 #include "parallel/call_progress.h"
 #include "parallel/parallel_for.h"
+#include "parallel/tbb_loop.h"
 #include "tessera/guard.h"
 #include "tessera/topology.h"
 
@@ -36,7 +37,8 @@ class PartsProgress {
     done_ += share / parts_;
     if (done_ < reported_ + 0.01) return;
     reported_ = std::min(done_, 1.0);
-    execution_.progress(reported_);
+    // A thread that took another part while the caller waits would wait for the lock, which it holds itself.
+    without_other_tasks([&] { execution_.progress(reported_); });
   }
 
  private:
