@@ -79,7 +79,15 @@ export class Tab {
   /** The picture's pixels, to compare. */
   async picture() {
     const canvas = await this.page.$('#picture');
-    return Buffer.from(await canvas.screenshot()).toString('base64');
+    return Buffer.from(await canvas.screenshot({ captureBeyondViewport: false })).toString('base64');
+  }
+  /** Whether the picture becomes this one within some seconds, which a busy machine may need to draw it. */
+  async becomes(wanted) {
+    for (let k = 0; k < 20; ++k) {
+      if (await this.picture() === wanted) return true;
+      await new Promise((resolve) => setTimeout(resolve, 250));
+    }
+    return false;
   }
   async key(name, shift = false) {
     await this.page.focus('#picture');
