@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 42> internal_export{
+constexpr std::array<std::string_view, 43> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -18,6 +18,7 @@ constexpr std::array<std::string_view, 42> internal_export{
     "tessera::in_own_arena",
     "tessera::parallel_for",
     "tessera::resize_lists",
+    "tessera::without_other_tasks",
     "tessera::ray_kernels",
     "tessera::UniformGrid::make",
     "tessera::UniformGrid::run",

@@ -37,6 +37,6 @@ class TESSERA_INTERNAL_EXPORT ApartTasks {
 void on_threads(int threads, FunctionRef<void()> work);
 
 /// Calls a function of the user's. If it starts tasks and waits for them, this thread runs none of ours meanwhile.
-void without_other_tasks(FunctionRef<void()> call);
+TESSERA_INTERNAL_EXPORT void without_other_tasks(FunctionRef<void()> call);
 
 }}  // namespace tessera::abi_0_1

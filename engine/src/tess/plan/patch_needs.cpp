@@ -37,7 +37,7 @@ PatchNeeds::PatchNeeds(const PatchSet::Impl& set, const PlannerOptions& options)
       chords_(set, options.f64_positions),
       shapes_(set.patches.size()),
       roundings_(set.patches.size()) {
-  if (keeps_turnings()) own_turnings_.resize(shapes_.size());
+  if (keeps_turnings(options)) own_turnings_.resize(shapes_.size());
 }
 
 void PatchNeeds::bound_block(std::size_t block) {
@@ -64,8 +64,8 @@ double PatchNeeds::own_rounding(const BlockGroup& group, PatchSet::Slot slot) co
   const std::optional<double> size = chords_.size(slot.block, slot.lane);
   const std::size_t index = set_->lane_patches[slot.block * std::size_t{PatchSet::lanes} + slot.lane];
   const auto patch = [&]() -> const BezierPatch& { return set_->patches[index]; };
-  const double vertices = options_.f64_positions ? f64_position_rounding(patch(), set_->origin)
-                          : is_f64(index)        ? f64_vertex_rounding(patch(), set_->origin)
+  const double vertices = options_.f64_positions   ? f64_position_rounding(patch(), set_->origin)
+                          : options_.is_f64(index) ? f64_vertex_rounding(patch(), set_->origin)
                           : size ? vertex_rounding(group.degree_u, group.degree_v, group.rational, *size)
                                  : vertex_rounding(patch(), set_->origin);
   return vertices + chords_.slack(slot.block, slot.lane);

@@ -39,6 +39,9 @@ struct NeededSegments {
   bool are_found() const { return failure == Failure::none; }
 };
 
+/// Whether bounds on how normals turn are kept.
+inline bool keeps_turnings(const PlannerOptions& options) { return options.angle && options.keeps_bounds; }
+
 /// The shapes, bounds and roundings of all patches of a set.
 ///
 /// Use: bound_block() of all blocks and bound_turning() of all patches, take_weld(), bound_views(); then the patches'
@@ -53,8 +56,6 @@ class PatchNeeds {
   /// Bounds how the normal of a patch turns without welding, if such bounds are kept. Threads: any number, each with
   /// its own patch; others may bound blocks.
   void bound_turning(std::size_t patch);
-  /// Whether bounds on how normals turn are kept.
-  bool keeps_turnings() const { return options_.angle && options_.keeps_bounds; }
   /// Adds the displacements of welded vertices to the roundings, and takes note of the borders that welding makes
   /// points.
   void take_weld(const Weld& weld);
@@ -87,7 +88,6 @@ class PatchNeeds {
   const ChordBlocks& chords() const { return chords_; }
   ChordBound chord(std::size_t patch) const { return chords_.chord(set_->slots[patch].block, set_->slots[patch].lane); }
   std::span<const ScreenSpaceBound> pictures() const { return pictures_; }  ///< `[patch]`; empty without a camera
-  bool is_f64(std::size_t patch) const { return !options_.f64_patches.empty() && options_.f64_patches[patch]; }
   /// Returns the rounding of a patch's vertices before welding, once its block is bounded.
   double own_rounding(const BlockGroup& group, PatchSet::Slot slot) const;
 

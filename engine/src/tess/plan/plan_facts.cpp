@@ -20,7 +20,7 @@ Result<SharedEdges> bound_and_find_edges(PatchNeeds& needs, const Execution& exe
   if (!status.ok()) return status;
   SharedEdges edges;
   // One thread finds the edges, one after the other, while the others find the bounds.
-  const std::size_t patches = needs.keeps_turnings() ? set.patches.size() : 0,
+  const std::size_t patches = keeps_turnings(needs.options()) ? set.patches.size() : 0,
                     normals = (patches + normals_per_task - 1) / normals_per_task;
   const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t piece = begin; piece < end; ++piece)

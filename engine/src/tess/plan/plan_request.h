@@ -18,6 +18,7 @@ struct PlannerOptions {
   WeldRules weld = {};
   /// `[patch]`: 1 if its vertices come from double control points; empty if no patch's do.
   std::vector<std::uint8_t> f64_patches = {};
+  bool is_f64(std::size_t patch) const { return !f64_patches.empty() && f64_patches[patch]; }
   std::vector<double> shares = {};  ///< `[patch]`: the share of the distance that it keeps, at most 1; empty: all of it
   double least_share = 1;
   bool f64_positions = false;   ///< the mesh has positions in double; needs all f64_patches

@@ -113,7 +113,8 @@ void PlanUpdate::bound_block(const PlanOfSet& of, std::uint32_t block) {
     const bool keeps_shape = collapsed.any() ? PatchShape::of(of.set.patches[patch], collapsed) == shape
                                              : !shape.collapsed.any() && !shape.is_curve;
     // Beyond a share of the tolerance other patches need doubles.
-    const bool is_fine = rounding <= max_rounding * needs.tolerance_of(patch, of.tolerance) || needs.is_f64(patch);
+    const bool is_fine =
+        rounding <= max_rounding * needs.tolerance_of(patch, of.tolerance) || needs.options().is_f64(patch);
     if (!keeps_shape || !is_fine) is_unknown_ = true;
   }
 }
