@@ -34,7 +34,7 @@ function(tessera_install_python)
   if(TESSERA_PYTHON_DIR)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/python/tessera DESTINATION ${TESSERA_PYTHON_DIR} COMPONENT python3-tessera
       FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "view.html" PATTERN "live.js" PATTERN "__pycache__" EXCLUDE)
-    # What live views need, where it is built (target tessera_npm of the preset "wasm").
+    # The package that live views need, where it is built (target tessera_npm of the preset "wasm").
     install(DIRECTORY ${TESSERA_NPM_FOLDER}/ DESTINATION ${TESSERA_PYTHON_DIR}/tessera/npm COMPONENT python3-tessera OPTIONAL
       FILES_MATCHING PATTERN "*.js" PATTERN "package.json" PATTERN "LICENSE" PATTERN "tessera.wasm"
       PATTERN "three" EXCLUDE PATTERN "worker" EXCLUDE PATTERN "node_modules" EXCLUDE)
@@ -47,7 +47,8 @@ function(tessera_install_python)
   endif()
 endfunction()
 
-# What the preset "wasm" makes, by the targets tessera_web and tessera_npm: looked for at the installation.
+# The page and the package, which the targets tessera_web and tessera_npm of the preset "wasm" make: looked for at the
+# installation.
 set(TESSERA_WEB_FOLDER ${PROJECT_SOURCE_DIR}/build/wasm/web CACHE STRING
   "The page of tessera view, which is installed if it is there")
 set(TESSERA_NPM_FOLDER ${PROJECT_SOURCE_DIR}/build/wasm/npm CACHE STRING

@@ -1,4 +1,4 @@
-// What the package computes: models, meshes, rays, points, measures.
+// The results of the package: models, meshes, rays, points, measures.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

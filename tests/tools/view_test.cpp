@@ -78,7 +78,7 @@ class View : public ToolTest {
     ADD_FAILURE() << "nothing is said: " << content_of(folder_ / "faults");
     return "";
   }
-  /// What is on standard error, once there is something.
+  /// The text on standard error, once there is some.
   std::string fault() const {
     for (int k = 0; k < 2000 && content_of(folder_ / "faults").empty(); ++k) std::this_thread::sleep_for(10ms);
     return content_of(folder_ / "faults");

@@ -1,4 +1,4 @@
-// What the page must do. A case takes { assert, browser, server, folder, native }.
+// The duties of the page. A case takes { assert, browser, server, folder, native }.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
 import { request } from 'node:http';

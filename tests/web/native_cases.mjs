@@ -1,4 +1,4 @@
-// What `tessera view` must do with the page; each case passes without the native program.
+// The duties of `tessera view` towards the page; each case passes without the native program.
 import { spawn } from 'node:child_process';
 import { copyFileSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -101,7 +101,7 @@ async function orbit() {
   await tab.page.close();
 }
 
-/** The same file by occt-import-js, in new pages that have been open as long, without a picture. */
+/** Measures occt-import-js with that file, in new pages that have been open as long, without a picture. */
 async function occtTime() {
   const other = createServer((request, response) => {
     const name = request.url.slice(1), end = name.split('.').at(-1);

@@ -1,7 +1,7 @@
 // Checks of what callers pass. Options that are misspelt, and lists of something else, would be silence otherwise.
 import { TesseraError, invalid } from './errors.js';
 
-/** What a value is, for messages. */
+/** The kind of a value, for messages. */
 function kindOf(value) {
   if (value === null || value === undefined) return String(value);
   return typeof value === 'object' ? value.constructor?.name ?? 'an object' : `a ${typeof value}`;

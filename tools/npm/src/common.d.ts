@@ -1,4 +1,4 @@
-// What all objects have in common.
+// The members that all objects have in common.
 
 /** A list of numbers. */
 export type Numbers = ArrayLike<number> & (readonly number[] | Float64Array | Float32Array | Uint32Array | Int32Array |
@@ -9,7 +9,7 @@ export type Vector = [number, number, number];
 /** sRGB and opacity, 0 to 1. */
 export type Colour = [number, number, number, number];
 
-/** What an error is: a value outside its range, a file that does not follow its format, memory that is full, ... */
+/** The kind of an error: a value outside its range, a file that does not follow its format, memory that is full, ... */
 export type ErrorCode = 'invalid_argument' | 'non_finite' | 'invalid_weight' | 'unsupported_degree' | 'count_mismatch' |
   'buffer_too_small' | 'unsupported' | 'isa_unavailable' | 'stale' | 'parse_error' | 'io_error' | 'out_of_memory' |
   'cancelled' | 'internal' | 'invalid_handle' | 'in_use';

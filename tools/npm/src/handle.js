@@ -1,4 +1,4 @@
-// What all objects of the module have in common.
+// The part that all objects of the module have in common.
 import { TesseraError } from './errors.js';
 import { its } from './internal.js';
 

@@ -1,4 +1,4 @@
-// What tessera.wasm asks of its host: seven functions of WASI, Chinese text, and who is told of progress.
+// The host that tessera.wasm asks for: functions of WASI, Chinese text, and who is told of progress.
 
 const badFile = 8, missing = 52;  // WASI's errno
 const mebibyte = 1 << 20;
@@ -67,7 +67,7 @@ export async function compiled(source) {
   if (typeof source === 'string' || source instanceof URL) return compiledAt(new URL(source, base()));
   return WebAssembly.compile(source);
 }
-/** What addresses are relative to: the page, or the working folder. */
+/** The base of relative addresses: the page, or the working folder. */
 function base() {
   return globalThis.document?.baseURI ?? globalThis.location?.href ?? `file://${(globalThis.process?.cwd() ?? '').replace(/[%?#]/g, encodeURIComponent)}/`;
 }

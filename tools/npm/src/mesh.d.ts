@@ -40,7 +40,7 @@ export class Mesh {
   readonly triangleCount: number;
   readonly hasNormals: boolean;
   readonly hasParameters: boolean;
-  /** What positions are relative to: float has 24 bits, whatever the model's distance from 0. */
+  /** The point that positions are relative to: float has 24 bits, whatever the model's distance from 0. */
   readonly origin: Vector;
   /** Shape `[vertexCount][3]`, relative to origin. */
   get positions(): Float32Array;

@@ -101,7 +101,7 @@ export class Model extends Handle {
   readonly warningCount: number;
   /** The unit of lengths, "mm"; "": the file states none. */
   readonly unit: string;
-  /** What of the file is skipped, one sentence each. */
+  /** The parts of the file that are skipped, one sentence each. */
   get warnings(): string[];
   /** @param index below surfaceCount; `invalid_argument` otherwise */
   surface(index: number): SurfaceInfo;

@@ -36,7 +36,7 @@ export class Patches extends Handle {
   readonly revision: number;
   /** The box of all control points. */
   readonly box: { low: Vector; high: Vector };
-  /** What the positions of meshes are relative to. */
+  /** The point that positions of meshes are relative to. */
   readonly origin: Vector;
   /** How far patches lie from surfaces that have no exact ones; 0: all are exact. */
   readonly fitError: number;

@@ -14,7 +14,7 @@ export interface View {
   extent?: number;
   /** By default a thousandth of the target's distance. */
   nearDistance?: number;
-  /** Of the picture, in pixels; by default 1280 x 800. */
+  /** The size of the picture in pixels; 1280 x 800 by default. */
   width?: number;
   height?: number;
 }
@@ -77,7 +77,7 @@ export class Plan extends Handle {
   readonly patches: Patches;
   readonly vertices: number;
   readonly triangles: number;
-  /** What was asked for, as a length. */
+  /** The distance that was asked for, as a length. */
   readonly tolerance: number;
   /** The distance that is proven; infinite with rates. */
   readonly bound: number;

@@ -5,7 +5,7 @@ import type { Patches } from './patches.js';
 export interface SceneOptions extends Run {
   /** How far a point may lie from the ray, a length; by default 2e-12 of the size. */
   tolerance?: number;
-  /** Of a patch, per direction: 1 (default), 2, 4 or 8. */
+  /** Pieces of a patch in each direction: 1 (default), 2, 4 or 8. */
   pieces?: 1 | 2 | 4 | 8;
   /** Prepared for {@link Scene.refit}; rays take a fifth longer. */
   editable?: boolean;

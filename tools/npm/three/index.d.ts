@@ -7,7 +7,7 @@ import type { SurfaceInfo } from '../index.js';
 
 type Now<T> = T | Promise<T>;
 
-/** What is known of a surface. */
+/** All that is known of a surface. */
 export type Face = SurfaceInfo;
 /** A view as plan({ view }) takes it. */
 export interface View {

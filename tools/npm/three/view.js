@@ -1,4 +1,4 @@
-// What a camera of three.js shows, as plan({ view }) takes it.
+// The view of a camera of three.js, as plan({ view }) takes it.
 import { Matrix4, Vector3 } from 'three';
 
 const local = new Matrix4(), inverse = new Matrix4();

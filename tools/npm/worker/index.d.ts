@@ -15,7 +15,7 @@ import type * as core from '../index.js';
 
 export { TesseraError, compile } from '../index.js';
 
-/** What a result is sent as: objects stay in the worker, and others stand for them. */
+/** A result as it is sent: objects stay in the worker, and others stand for them. */
 type Result<R> = [R] extends [core.Model] ? Model : [R] extends [core.Patches] ? Patches
   : [R] extends [core.Plan] ? Plan : [R] extends [core.Mesh] ? Mesh : [R] extends [core.Scene] ? Scene : R;
 type Arguments<A> = { [K in keyof A]: A[K] extends core.Mesh ? Mesh : A[K] extends core.Mesh | null | undefined

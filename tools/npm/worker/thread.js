@@ -12,7 +12,7 @@ let post = (message, transfer) => globalThis.postMessage(message, transfer);
 /** The members of an object that it keeps as values: index.js has copies of them. */
 function factsOf(object) { return { ...object }; }
 
-/** What a result is sent as: objects of the module stay here, and views of its memory are copied. */
+/** A result as it is sent: objects of the module stay here, and views of its memory are copied. */
 function sent(value, id, transfer) {
   const kind = Object.keys(kinds).find((name) => value instanceof kinds[name]);
   if (kind) {

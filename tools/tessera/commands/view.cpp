@@ -40,7 +40,7 @@ bool is_in(const std::string& extension, const std::string& formats) {
 /// Whether OpenCASCADE alone reads the file, which browsers do not have.
 bool must_be_converted(const std::string& file) { return is_in(inner_extension(file), ".iges, .igs, .brep, .brp"); }
 
-/// What a file must be for the page to read it.
+/// Checks that the page can read a file.
 Status check_file(const std::string& file) {
   struct stat facts {};
   if (::stat(file.c_str(), &facts) != 0)

@@ -12,7 +12,7 @@ class BrowserStart {
  public:
   explicit BrowserStart(const std::string& address);
 
-  /// What has gone wrong, said once; empty if nothing has, or if xdg-open is not yet done.
+  /// Returns the sentence of what has gone wrong, once; empty if nothing has, or if xdg-open is not yet done.
   std::string take_fault();
 
  private:

@@ -39,8 +39,7 @@ const char* type_of(const fs::path& name) {
   return known == types.end() ? unknown_type : known->second;
 }
 
-/// What a page from here may do: its own scripts, workers and WebAssembly, and nothing of the network; as by
-/// tools/web/serve.mjs.
+/// Lets a page have its own scripts, workers and WebAssembly, and nothing of the network, as tools/web/serve.mjs does.
 std::string content_policy(const std::string& nonce) {
   return "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' 'nonce-" + nonce +
          "'; worker-src 'self'; connect-src 'self'; style-src 'self'; img-src 'self' blob:; base-uri 'none'; "

@@ -1,5 +1,5 @@
 #pragma once
-// What the server of `tessera view` has: the files of the page, and one model.
+// The content of the server of `tessera view`: the files of the page, and one model.
 
 #include <filesystem>
 #include <memory>

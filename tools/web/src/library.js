@@ -83,7 +83,7 @@ export class Document {
     }
   }
   async #read(tessera, source, bytes, progress) {
-    // What is measured later is what was read, wherever the file is by then.
+    // Measures are of these bytes, wherever the file is by then.
     Object.assign(this, { name: source.name, file: new Blob([bytes]) });
     this.#tessera = tessera;
     const model = (this.#model = await tessera.open(source.name, bytes,

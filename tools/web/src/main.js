@@ -256,7 +256,6 @@ $('saving').addEventListener('close', () => $('saving').returnValue === 'save' &
 $('modes').addEventListener('change', (event) => setMode(event.target.value));
 $('curvature').addEventListener('change', () => setMode('curvature'));
 addEventListener('themechange', takeColours);
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', takeColours);
 takeColours();
 
 const asked = sourceOfAddress();

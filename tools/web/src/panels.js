@@ -1,4 +1,4 @@
-// What is said about a model beside its picture: the face that is picked, numbers, and parts.
+// The words about a model beside its picture: the face that is picked, numbers, and parts.
 import { count, counted, element, length, proven, short, terms, withUnit } from './format.js';
 import { plainName } from './parts.js';
 

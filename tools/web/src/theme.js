@@ -3,19 +3,22 @@
   const stored = () => {
     try { return localStorage.getItem('theme'); } catch { return null; }
   };
-  const root = document.documentElement;
-  const take = (theme) => {
-    if (theme === 'light' || theme === 'dark') root.dataset.theme = theme;
-    else delete root.dataset.theme;
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  let chosen = stored();
+  if (chosen !== 'light' && chosen !== 'dark') chosen = 'auto';
+  const take = () => {
+    document.documentElement.dataset.theme = chosen === 'auto' ? (dark.matches ? 'dark' : 'light') : chosen;
     dispatchEvent(new Event('themechange'));
   };
-  take(stored());
+  take();
+  dark.addEventListener('change', take);
   addEventListener('DOMContentLoaded', () => {
     const choice = document.getElementById('theme');
-    choice.value = root.dataset.theme ?? 'auto';
+    choice.value = chosen;
     choice.addEventListener('change', () => {
-      try { localStorage.setItem('theme', choice.value); } catch { /* A page without storage forgets it. */ }
-      take(choice.value);
+      chosen = choice.value;
+      try { localStorage.setItem('theme', chosen); } catch { /* A page without storage forgets it. */ }
+      take();
     });
   });
 })();
