@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "c/objects.h"
+#include "model/surface_face.h"
 #include "tessera/edge_matching.h"
 #include "tessera/io.h"
 #include "tessera/topology.h"
@@ -141,16 +142,12 @@ tsr_face_info face_of(const Model& model, std::size_t surface) {
   constexpr std::uint32_t none = 0xffffffff;
   tsr_face_info filled{};
   filled.instance = filled.shape = filled.face = none;
-  const auto after = std::ranges::upper_bound(model.instances, surface, {}, &Instance::first_surface);
-  if (after == model.instances.begin()) return filled;
-  const Instance& instance = after[-1];
-  const std::size_t face = surface - instance.first_surface;
-  if (instance.shape >= model.shapes.size() || face >= model.shapes[instance.shape].faces.size()) return filled;
-  filled.instance = static_cast<std::uint32_t>(after - model.instances.begin() - 1);
-  filled.shape = instance.shape;
-  filled.face = static_cast<std::uint32_t>(face);
-  const std::optional<Colour>& own = model.shapes[instance.shape].faces[face].colour;
-  filled.has_colour = write_colour(own ? own : instance.colour, filled.colour);
+  const std::optional<SurfaceFace> found = face_of_surface(model, surface);
+  if (!found) return filled;
+  filled.instance = static_cast<std::uint32_t>(found->instance - model.instances.data());
+  filled.shape = found->instance->shape;
+  filled.face = static_cast<std::uint32_t>(surface - found->instance->first_surface);
+  filled.has_colour = write_colour(found->colour(), filled.colour);
   return filled;
 }
 

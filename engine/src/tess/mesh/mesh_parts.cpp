@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "base/text.h"
+#include "model/surface_face.h"
 #include "tess/cells/mesh_faces.h"
 #include "tess/mesh/mesh_parts.h"
 #include "tessera/guard.h"
@@ -31,13 +31,8 @@ struct Surfaces {
 
 /// The colour of a model's surface, if it is the face of an instance.
 std::optional<Colour> colour_of(const Model& model, std::size_t surface) {
-  const auto after = std::ranges::upper_bound(model.instances, surface, {}, &Instance::first_surface);
-  if (after == model.instances.begin()) return {};
-  const Instance& instance = after[-1];
-  const std::size_t face = surface - instance.first_surface;
-  if (instance.shape >= model.shapes.size() || face >= model.shapes[instance.shape].faces.size()) return {};
-  const std::optional<Colour>& own = model.shapes[instance.shape].faces[face].colour;
-  return own ? own : instance.colour;
+  const std::optional<SurfaceFace> face = face_of_surface(model, surface);
+  return face ? face->colour() : std::nullopt;
 }
 
 /// Builds parts of the faces of one surface after the other.
