@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "measure/measure_bodies.h"
+#include "tessera/generic_callable.h"
 #include "tessera/nurbs_surface.h"
 #include "trim/trim_shapes.h"
 
@@ -105,6 +107,36 @@ TEST(ClosedForm, TheTorus) {
   expect_measured({body.inertia.zz, body.inertia.error}, volume * (major * major + 0.75 * minor * minor), 1e-8, "zz");
   expect_measured({body.inertia.xx, body.inertia.error}, volume * (0.5 * major * major + 0.625 * minor * minor), 1e-8,
                   "xx");
+}
+
+/// A torus around z by its formula; a minor angle of -pi/2 to pi/2 about a major radius of 0 gives a sphere.
+struct RoundSurface {
+  double major, minor;
+  template <class T>
+  std::array<T, 3> operator()(const T& u, const T& v) const {
+    using std::cos, std::sin;
+    const T distance = major + minor * cos(v);
+    return {distance * cos(u), distance * sin(u), minor * sin(v)};
+  }
+};
+
+TEST(ClosedForm, FormulasCountTheirFit) {
+  for (const double size : {1e-3, 1.0, 1e3}) {
+    const RoundSurface ball{0, 2 * size}, ring{3 * size, 1.25 * size};
+    const Surface surfaces[] = {value_of(generic_surface(ball, {-pi, pi, -pi / 2, pi / 2})),
+                                value_of(generic_surface(ring, {-pi, pi, -pi, pi}))};
+    const double areas[] = {16 * pi * size * size, 4 * pi * pi * ring.major * ring.minor};
+    const double volumes[] = {32.0 / 3.0 * pi * std::pow(size, 3), 2 * pi * pi * ring.major * ring.minor * ring.minor};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::string what = "surface " + std::to_string(k) + " of size " + std::to_string(size);
+      const std::vector<ModelSurface> all{placed_surface(surfaces[k], Affine::translated({size, -size, 0}))};
+      const SurfaceMeasures found = value_of(measure_surfaces(model_of(all))).total;
+      EXPECT_FALSE(found.proven);
+      expect_measured(found.area, areas[k], 2e-3, what);
+      expect_point(found.centroid, {size, -size, 0}, 1e-2 * size, what);
+      expect_measured(value_of(measure_enclosed(all)).volume, volumes[k], 1e-4, what);
+    }
+  }
 }
 
 TEST(ClosedForm, SidesOfConesCylindersAndParaboloids) {

@@ -1,6 +1,7 @@
 #include "measure/face_integrals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <variant>
 
@@ -18,6 +19,38 @@ constexpr double loop_share = 1e-9;
 
 bool is_exact(const ModelSurface& surface) {
   return std::holds_alternative<BezierPatch>(surface.surface) && surface.placement == Affine{};
+}
+
+/// Bounds on the lengths of a patch along u and along v.
+std::array<double, 2> net_lengths(const BezierPatch& patch) {
+  const int m = patch.degree_u(), n = patch.degree_v();
+  std::array<double, 2> lengths{};
+  for (int i = 0; i < m; ++i) {
+    double longest = 0;
+    for (int j = 0; j <= n; ++j) longest = std::max(longest, length(patch.point(i + 1, j) - patch.point(i, j)));
+    lengths[0] += longest;
+  }
+  for (int j = 0; j < n; ++j) {
+    double longest = 0;
+    for (int i = 0; i <= m; ++i) longest = std::max(longest, length(patch.point(i, j + 1) - patch.point(i, j)));
+    lengths[1] += longest;
+  }
+  return lengths;
+}
+
+/// Adds an estimate of the error of an area by a surface's fit, whose slopes may differ from the surface's too. For that,
+/// the error is taken for a polynomial of the patch's degree n: over [0,1], its derivative is 2 n^2 times as large at
+/// most (A. A. Markov's inequality).
+void add_fit_error(const FitError& fit, const BezierPatch& patch, double reach, ExactSums& area) {
+  if (!(fit.distance > 0)) return;
+  const auto slope_error = [&](int degree) { return 2.0 * degree * degree * fit.distance; };
+  const double error_u = slope_error(patch.degree_u()), error_v = slope_error(patch.degree_v());
+  const auto [along_u, along_v] = net_lengths(patch);
+  Integrals all;
+  for (std::size_t k = 0; k < 4; ++k)
+    all.error[k] = (error_u * along_v + error_v * along_u + error_u * error_v) *
+                   std::pow(reach, moment_degree(static_cast<int>(k)));
+  area.add(all, 1);
 }
 
 /// Adds the error of a flux by a surface's fit: the volume between the surface and its patches.
@@ -75,8 +108,10 @@ FaceIntegrals integrate(const MeasuredFace& face, const Vec3& centre, bool area,
   FaceIntegrals all;
   all.proven = face.proven;
   const StripLimits limits{options.accuracy, options.max_cells};
+  const double reach = reach_of(face.grid.box(), centre);
   const auto add = [&](std::size_t place, std::span<const CurveStrip> strips) {
     const BezierPatch& patch = face.grid.patches()[place];
+    if (area) add_fit_error(face.grid.fit_error(), patch, reach, all.area);
     const Vec3 middle = patch.hull_box().centre();
     const StripPatch local{LocalNet(patch, middle, face.data_error), middle - centre};
     for (const CurveStrip& strip : strips) {
@@ -94,7 +129,7 @@ FaceIntegrals integrate(const MeasuredFace& face, const Vec3& centre, bool area,
     const CurveStrip whole = whole_strip();
     for (std::size_t place = 0; place < face.grid.patches().size(); ++place) add(place, std::span(&whole, 1));
   }
-  if (area && flux) add_fit_error(face.grid.fit_error(), all.area.sums(), reach_of(face.grid.box(), centre), all.flux);
+  if (area && flux) add_fit_error(face.grid.fit_error(), all.area.sums(), reach, all.flux);
   return all;
 }
 

@@ -1,5 +1,5 @@
 // The words about a model beside its picture: the face that is picked, numbers, and parts.
-import { count, counted, element, length, proven, short, terms, withUnit } from './format.js';
+import { count, counted, element, length, proven, short, terms } from './format.js';
 import { plainName } from './parts.js';
 
 const quiet = (text) => element('p', { className: 'quiet' }, text);
@@ -49,7 +49,7 @@ export class Numbers {
   constructor(place, document, onMeasure) {
     const { faces, instances, shapes, patchCount, cutCount, unit, warnings, box, fitError } = document;
     const row = (name) => (this.#rows[name] = element('span'));
-    Object.assign(this, { unit, isFitted: fitError > 0 });
+    this.unit = unit;
     this.#measures = element('div', { id: 'measures' });
     const size = box.high.map((high, k) => short(high - box.low[k])).join(' × ');
     place.replaceChildren(terms([
@@ -87,17 +87,14 @@ export class Numbers {
     this.#measures.querySelector('progress').value = share;
   }
   showMeasures({ area, areaError, bodies, isProven }) {
-    // The errors are those of a fit's measures, and not of the fit.
-    const { unit, isFitted } = this, value = (number, error, power) =>
-      (isFitted ? `≈ ${withUnit(short(number, 5), unit, power)}` : proven(number, error, unit, power));
+    const value = (number, error, power) => proven(number, error, this.unit, power);
     const rows = [['Area', value(area, areaError, 2)]];
     const closedBodies = bodies.filter((body) => Number.isFinite(body.volume));
     const sum = (name) => closedBodies.reduce((total, body) => total + body[name], 0);
     if (closedBodies.length) rows.push(['Volume', value(sum('volume'), sum('volumeError'), 3)]);
     rows.push(['Bodies', bodies.length ? count(bodies.length) : 'none: the faces enclose no volume']);
     const areAll = isProven && bodies.every((body) => body.isProven);
-    rows.push(['Bounds', isFitted ? 'none: of fitted surfaces'
-      : areAll ? 'proven' : 'estimated, since trimming curves or gaps are']);
+    rows.push(['Bounds', areAll ? 'proven' : 'estimated, since fits, trimming curves or gaps are']);
     this.#measures.replaceChildren(terms(rows));
   }
   showMeasureError(sentence) { this.#measures.replaceChildren(quiet(sentence)); }
