@@ -162,6 +162,25 @@ TEST(CBytes, OfModelsAndOfTheirShapes) {
   EXPECT_EQ(made, nullptr);
 }
 
+TEST(CBytes, OfModelsInPlaceOfCadFiles) {
+  tsr_model *part = nullptr, *again = nullptr;
+  ASSERT_C(tsr_model_read(&part, TESSERA_SOURCE_DIR "/tools/models/bearing_block.step", nullptr));
+  const Handle<tsr_model> model(part);
+  tsr_bytes* made = nullptr;
+  ASSERT_C(tsr_model_cad_bytes(&made, model.get()));
+  const std::string kept = bytes_of(Handle<tsr_bytes>(made));
+  ASSERT_C(tsr_model_read_bytes(&again, kept.data(), kept.size(), "bearing_block.igs", nullptr, nullptr));
+  const Handle<tsr_model> read(again);
+  ASSERT_C(tsr_model_cad_bytes(&made, read.get()));
+  EXPECT_TRUE(bytes_of(Handle<tsr_bytes>(made)) == kept);
+  expect_c_error(tsr_model_read_bytes(&again, kept.data(), kept.size() - 1, "part.igs", nullptr, nullptr),
+                 TSR_PARSE_ERROR, "part.igs: a model that was read before, found");
+  expect_c_error(tsr_model_cad_bytes(&made, model_of(wavy_field(1, 1)).get()), TSR_UNSUPPORTED, "must be a B-spline",
+                 0);
+  expect_c_error(tsr_model_cad_bytes(&made, nullptr), TSR_INVALID_HANDLE, "is null");
+  expect_c_error(tsr_model_cad_bytes(nullptr, model.get()), TSR_INVALID_ARGUMENT, "bytes is a null");
+}
+
 TEST(CBytes, ErrorsNameTheFile) {
   const Handle<tsr_model> model = model_of(wavy_field(1, 1));
   const Handle<tsr_set> set = set_of(model.get());

@@ -11,7 +11,9 @@
 #include "support/random_patches.h"
 #include "support/scratch_folder.h"
 #include "support/synthetic_sets.h"
+#include "tessera/cad.h"
 #include "tessera/io.h"
+#include "tessera/nurbs_surface.h"
 
 namespace tessera::test {
 namespace {
@@ -122,6 +124,19 @@ void step_texts(Table& table) {
   Texts step(table, parse_step, "read_cad(\"m.stp\"), parse_cad(text, \"m.stp\")");
   step_rows([&](const std::string& input, const std::string& text, StatusCode code) { step.row(input, text, code); });
   step_answers(table);
+}
+
+void kept_models(Table& table) {
+  table.of("cad_model_bytes(model), parse_cad(bytes, \"m.igs\")");
+  Model model;
+  model.surfaces.push_back({"ball", *make_nurbs_sphere({}, 1)});
+  const std::string kept = *cad_model_bytes(model);
+  table.row("half of the bytes", parse_error, parse_cad(std::string_view(kept).substr(0, kept.size() / 2), "m.igs"));
+  std::string damaged = kept;
+  damaged.back() = '\x7f';
+  table.row("a last byte that is damaged", parse_error, parse_cad(damaged, "m.igs"));
+  model.surfaces.push_back({"flat", *BezierPatch::polynomial(1, 1, std::vector<Vec3>(4))});
+  table.row("a surface that is no spline", unsupported, cad_model_bytes(model));
 }
 
 void mesh_texts(Table& table) {
@@ -265,6 +280,7 @@ void fill_readers(Table& table) {
   bezier_texts(table);
   scene_texts(table);
   step_texts(table);
+  kept_models(table);
   mesh_texts(table);
 }
 

@@ -12,6 +12,8 @@
 // Packed files: a file that begins as gzip or as a zip archive does is unpacked, whatever its extension, such as .stpz,
 // .stp.gz or .igs.gz. An archive must hold one file. The unpacked size is limited as for read_model().
 //
+// Models that were read before: cad_model_bytes() keeps a model as bytes, which are read in place of the file.
+//
 // Surfaces: every face becomes a B-spline or NURBS surface, in millimetres whatever the file's unit. BREP files have no
 // unit; their numbers are kept.
 //
@@ -63,6 +65,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "tessera/model.h"
@@ -107,7 +110,7 @@ struct CadOptions {
 /// Errors: the first warning's reason (no face is left), io_error (the file; the program cannot be started),
 /// parse_error (the reason is the reader's; a packed file is damaged), invalid_weight (IGES: OpenCASCADE would read
 /// another surface), unsupported (the extension; not a regular file; there is no program, or one of another version; a
-/// packed file beyond the limits, an archive of several files, or a build without zlib), out_of_memory, cancelled,
+/// model that another version kept; a packed file beyond the limits, an archive of several files, or a build without zlib), out_of_memory, cancelled,
 /// internal (OpenCASCADE crashed; the program sent something else than a model).
 ///
 /// Threads: any. Signals and other children of the process are left alone.
@@ -116,6 +119,11 @@ Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& opti
 /// the format if the options leave it open. Errors: as read_cad(), and io_error (no file in memory can be made for the
 /// program). Threads: any.
 Result<Model> parse_cad(std::string_view bytes, const std::filesystem::path& name, const CadOptions& options = {});
+/// Returns a model of read_cad() as bytes that read_cad() and parse_cad() take in place of a CAD file, under the name of
+/// any. They need no program for it, nor the time that the file takes: for browsers, and for files that are opened
+/// often. The bytes are for programs of the same version. Errors: unsupported (a surface that is no B-spline; index = the
+/// surface), out_of_memory. Threads: any.
+Result<std::string> cad_model_bytes(const Model& model);
 /// Returns the program that read_cad() starts with these options; one that is named need not exist. Errors: unsupported
 /// (none is named or found). Threads: any.
 Result<std::filesystem::path> find_cad_reader(const CadOptions& options = {});

@@ -53,6 +53,10 @@ tsr_status tsr_mesh_bytes(tsr_bytes** bytes, const tsr_mesh* mesh, const tsr_set
 tsr_status tsr_model_mesh_bytes(tsr_bytes** bytes, const tsr_model* model, const tsr_mesh* const* meshes,
                                 const tsr_set* const* sets, size_t count, const char* name);
 tsr_status tsr_model_bytes(tsr_bytes** bytes, const tsr_model* model, const char* name);
+/* Keeps a model that a STEP, IGES or BREP file was read as, with its unit, colours, parts and edges. These bytes can be
+ * read in place of the file, under its name, by the same version of the library and without tessera-cad-reader. Errors:
+ * TSR_UNSUPPORTED (a surface that is no B-spline; index = the surface). */
+tsr_status tsr_model_cad_bytes(tsr_bytes** bytes, const tsr_model* model);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -1,6 +1,7 @@
 // Models of files and of bytes, with options, and files as bytes, of the C interface.
 
 #include "c/mesh.h"
+#include "tessera/cad.h"
 #include "tessera/io.h"
 #include "tessera/tessera_c_files.h"
 
@@ -113,6 +114,14 @@ tsr_status tsr_model_bytes(tsr_bytes** bytes, const tsr_model* model, const char
     std::string written;
     const Result<WrittenModel> facts = write_model_bytes(of->model, name, written);
     return facts ? give_bytes(bytes, std::move(written)) : CStatus(facts.status());
+  });
+}
+
+tsr_status tsr_model_cad_bytes(tsr_bytes** bytes, const tsr_model* model) {
+  return make_bytes(bytes, "", [&]() -> CStatus {
+    const Held<CModel> of(model);
+    if (!of) return of.error();
+    return give_bytes(bytes, cad_model_bytes(of->model));
   });
 }
 

@@ -95,6 +95,7 @@ _FUNCTIONS = {
     "tsr_mesh_bytes": "ipppz",
     "tsr_model_mesh_bytes": "ippppsz",
     "tsr_model_bytes": "ippz",
+    "tsr_model_cad_bytes": "ipp",
     "tsr_model_new": "ipps",
     "tsr_model_join": "ippd",
     "tsr_model_save": "ipz",

@@ -83,12 +83,16 @@ class WithLiveView(Shown):
         """Writes the surfaces (.json)."""
         raise NotImplementedError
 
+    def _cad_bytes(self) -> bytes:
+        """Returns a model that OpenCASCADE has read as bytes that can be read in place of its file."""
+        raise NotImplementedError
+
     def view(self, live: bool = False) -> Shown:
         """Returns what a notebook shows: the model itself, which a notebook shows with a mesh that is stored.
 
         ``live``: a view that makes its meshes itself, so that one can go as near as one likes. The output holds the
-        library, 2 MB, and the model's file; models that browsers cannot read (IGES, BREP, arrays) as their surfaces,
-        without colours. LiveView.save() writes it as a page. Errors: UnsupportedError (this installation has no
+        library, 2 MB, and the model's file, or the model where browsers cannot read that (IGES, BREP); models of arrays
+        as their surfaces, without colours. LiveView.save() writes it as a page. Errors: UnsupportedError (this installation has no
         tessera.wasm).
 
         >>> import tessera as ts
@@ -98,12 +102,13 @@ class WithLiveView(Shown):
         return LiveView(repr(self), self._readable_file, lambda: self._view()[1]) if live else self
 
     def _readable_file(self) -> ModelFile:
-        """Returns a file that browsers can read: the model's own, or one of its surfaces."""
+        """Returns a file that browsers can read: the model's own, or the model in its place, or one of its surfaces."""
         if self._file:
             with contextlib.suppress(OSError):  # it has changed since, or is there no longer
                 file = self._file()
                 if not _BY_OPENCASCADE.search(f".{file.format}" if file.format else file.name):
                     return file
+                return ModelFile(file.name, self._cad_bytes(), file.format)
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "model.json")
             self.save(path)

@@ -242,6 +242,15 @@ class Model(Handle, WithLiveView):
         else:
             call(library.tsr_model_save, self._handle, os.fsencode(path))
 
+    def _cad_bytes(self) -> bytes:
+        handle, size = ctypes.c_void_p(), ctypes.c_size_t()
+        call(library.tsr_model_cad_bytes, ctypes.byref(handle), self._handle)
+        try:
+            data = library.tsr_bytes_data(handle, ctypes.byref(size))
+            return ctypes.string_at(data, size.value)
+        finally:
+            library.tsr_release(handle)
+
     def __repr__(self) -> str:
         info = self._info()
         parts = [_counted(info.surfaces, "surface")]

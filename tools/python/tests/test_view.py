@@ -295,6 +295,18 @@ def test_live_views_of_other_models(module, tmp_path):
         assert data["name"] == "model.json" and len(ts.read(unpacked(data["file"]), format="json")) == 1
 
 
+def test_live_views_of_files_that_browsers_cannot_read(module, tmp_path, monkeypatch):
+    """The view holds the model that OpenCASCADE has read, with its parts, unit and edges."""
+    part = ts.read(pathlib.Path(__file__).parents[2] / "models/bearing_block.step")
+    path = tmp_path / "block.igs"
+    path.write_bytes(part._cad_bytes())
+    data = live_data_of(ts.read(path).view(live=True)._repr_html_())
+    monkeypatch.setenv("TESSERA_CAD_READER", "/nowhere/reader")
+    shown = ts.read(unpacked(data["file"]), format="igs")
+    assert (data["name"], data["join"], shown.unit) == ("block.igs", [], part.unit)
+    assert repr(shown).split(":")[0] == repr(part).split(":")[0] and len(shown.instances) == len(part.instances) > 1
+
+
 def test_live_views_without_the_module_say_so(tmp_path, monkeypatch, goblet):
     monkeypatch.setenv("TESSERA_NPM", str(tmp_path))
     live.packed_module.cache_clear()

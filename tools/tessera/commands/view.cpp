@@ -13,6 +13,7 @@
 #include "serve/server.h"
 #include "serve/site.h"
 #include "stages/load.h"
+#include "tessera/cad.h"
 #include "tessera/io.h"
 
 namespace tessera::cli {
@@ -38,7 +39,7 @@ bool is_in(const std::string& extension, const std::string& formats) {
 }
 
 /// Whether OpenCASCADE alone reads the file, which browsers do not have.
-bool must_be_converted(const std::string& file) { return is_in(inner_extension(file), ".iges, .igs, .brep, .brp"); }
+bool must_be_read_here(const std::string& file) { return is_in(inner_extension(file), ".iges, .igs, .brep, .brp"); }
 
 /// Checks that the page can read a file.
 Status check_file(const std::string& file) {
@@ -54,26 +55,21 @@ Status check_file(const std::string& file) {
                 file + ": unsupported format \"" + extension + "\": surfaces are read as " + model_formats());
 }
 
-/// Reads a file here, and writes its surfaces as JSON, which the page reads.
-Result<ServedModel> convert(const Job& job, std::string name, Timings& timings) {
+/// Reads a file here, and keeps its model as bytes, which the page reads in its place.
+Result<ServedModel> read_here(const Job& job, std::string name, Timings& timings) {
   const Result<Loaded> loaded = load(job, {}, With::surfaces, timings);
   if (!loaded) return loaded.status();
-  name += ".json";
-  std::string bytes;
-  const Result<WrittenModel> written =
-      timings.measure("write", [&] { return write_model_bytes(loaded->model, name, bytes, {}); });
-  if (!written) return written.status();
-  for (const std::string& warning : written->warnings) warn(warning);
-  warn(job.inputs[0] +
-       ": read once, by OpenCASCADE; the page gets surfaces with trims, without unit, colours, parts and common edges");
-  return ServedModel{std::move(name), {}, std::make_shared<const std::string>(std::move(bytes))};
+  Result<std::string> bytes = cad_model_bytes(loaded->model);
+  if (!bytes) return bytes.status();
+  warn(job.inputs[0] + ": read once, by OpenCASCADE; the page shows this model until the program ends");
+  return ServedModel{std::move(name), {}, std::make_shared<const std::string>(*std::move(bytes))};
 }
 
 Result<ServedModel> served_model(const Job& job, Timings& timings) {
   const std::string& file = job.inputs[0];
   if (Status status = check_file(file); !status.ok()) return status;
   std::string name = fs::path(file).filename().string();
-  if (must_be_converted(file)) return convert(job, std::move(name), timings);
+  if (must_be_read_here(file)) return read_here(job, std::move(name), timings);
   return ServedModel{std::move(name), fs::absolute(file)};
 }
 
@@ -108,8 +104,7 @@ Status run_view(const Job& job, const ViewOptions& options, const CommonOptions&
 constexpr const char* view_footer =
     R"(Prints the page's address, opens it in the browser, and serves until Ctrl-C. The browser does all the work: the
 page is Tessera as WebAssembly, and needs no network. Reloading it reads the file again. One model at a time.
-IGES and BREP files, which browsers cannot read, are read here, once: the page gets their surfaces and trims, without
-unit, colours, parts and common edges.
+IGES and BREP files, which browsers cannot read, are read here, once.
 The page's folder is looked for beside the installed program (share/tessera/web) and in the build (build/wasm/web),
 unless --web or the environment variable TESSERA_WEB names it. Only programs on this machine can connect.
 

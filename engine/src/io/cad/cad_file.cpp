@@ -6,6 +6,8 @@
 #include <system_error>
 
 #include "io/cad/cad_input.h"
+#include "io/cad/cad_reader.h"
+#include "io/cad/kept_model.h"
 #include "io/file/file.h"
 #include "tessera/io.h"
 
@@ -22,19 +24,25 @@ Result<CadInput> CadInput::open(const fs::path& path) {
   if (fs::exists(facts) && !fs::is_regular_file(facts))
     return Status(StatusCode::unsupported, made.name_ + ": CAD files are read from regular files only");
   std::ifstream file;
-  file.rdbuf()->pubsetbuf(nullptr, 0);  // no buffer for four bytes
+  file.rdbuf()->pubsetbuf(nullptr, 0);  // no buffer for a few bytes
   file.open(path, std::ios::binary);
   if (!file) return io_failure(path, "cannot be opened", errno);
   made.size_ = fs::file_size(path, error);
   if (error) return io_failure(path, "cannot be read", error.value());
   if (made.size_ == 0) return made.no_bytes();
-  std::array<char, 4> begin{};
-  file.read(begin.data(), begin.size());
-  made.is_file_ = !made.is_packed({begin.data(), static_cast<std::size_t>(file.gcount())});
+  std::array<char, greeting_begin.size()> first{};
+  file.read(first.data(), first.size());
+  const std::string_view begin(first.data(), static_cast<std::size_t>(file.gcount()));
+  const bool is_packed = made.is_packed(begin);
+  made.is_file_ = !is_packed && !begins_as_kept_model(begin);
   if (made.is_file_) return made;
-  const Result<std::string> bytes = read_file(path);
+  Result<std::string> bytes = read_file(path);
   if (!bytes) return bytes.status();
-  if (Status status = made.unpack(*bytes); !status.ok()) return status;
+  if (!is_packed) {
+    made.owned_ = *std::move(bytes);
+  } else if (Status status = made.unpack(*bytes); !status.ok()) {
+    return status;
+  }
   return made;
 }
 

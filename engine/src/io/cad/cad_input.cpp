@@ -1,5 +1,6 @@
 #include "io/cad/cad_input.h"
 
+#include "io/cad/kept_model.h"
 #include "io/file/gzip.h"
 #include "io/file/zip.h"
 #include "tessera/io.h"
@@ -9,8 +10,11 @@ namespace tessera { inline namespace abi_0_1 {
 Status CadInput::no_bytes() const { return Status(StatusCode::parse_error, name_ + ": the file is empty"); }
 
 bool CadInput::is_packed(std::string_view begin) const {
+  if (begins_as_kept_model(begin)) return false;  // whatever the name
   return lower_extension(name_) == ".gz" || begins_as_gzip(begin) || begins_as_zip(begin);
 }
+
+bool CadInput::is_kept_model() const { return begins_as_kept_model(given_.empty() ? owned_ : given_); }
 
 Result<CadInput> CadInput::memory(std::string_view bytes, const std::filesystem::path& name) {
   CadInput made(name);

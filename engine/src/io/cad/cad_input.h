@@ -27,6 +27,8 @@ class CadInput {
   /// Returns a path that a child process can open during the object's lifetime: of the file itself, or of a copy in
   /// memory where that is packed or no file. Errors: io_error.
   Result<std::string> file();
+  /// Whether the content is a model that was read before; see kept_model.h.
+  bool is_kept_model() const;
   /// The size of what file() names.
   std::uint64_t file_bytes() const { return size_; }
 

@@ -10,20 +10,13 @@
 #include "base/text.h"
 #include "io/cad/child_process.h"
 #include "io/cad/model_bytes.h"
-#include "tessera/version.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr std::string_view greeting_begin = "tessera-cad-reader ";
 constexpr auto last_words = 2s;    // for the rest of a message that is no greeting
 constexpr auto end_of_child = 2s;  // after its last byte
-
-std::string trimmed(std::string_view text) {
-  const std::size_t last = text.find_last_not_of(" \n");
-  return std::string(text.substr(0, last == std::string_view::npos ? 0 : last + 1));
-}
 
 /// One conversation with a reader.
 class Conversation {
@@ -49,10 +42,9 @@ class Conversation {
     const Reading end = child_.read(greeting, greeting_size, {run_.startup, run_.cancel});
     if (end == Reading::cancelled) return cancelled();
     if (greeting == cad_reader_greeting()) return {};
-    const std::string wanted = "\"" + trimmed(cad_reader_greeting()) + "\"";
+    const std::string wanted = quoted_words(cad_reader_greeting());
     if (greeting.starts_with(greeting_begin) && greeting.size() == greeting_size)
-      return Status(StatusCode::unsupported, who() + "is \"" + quotable(trimmed(greeting)) + "\", it must be " +
-                                                 wanted +
+      return Status(StatusCode::unsupported, who() + "is " + quoted_words(greeting) + ", it must be " + wanted +
                                                  ": install both from one build, or name another reader by "
                                                  "TESSERA_CAD_READER");
     if (end == Reading::late)
@@ -65,17 +57,8 @@ class Conversation {
     constexpr std::size_t enough = 400;
     child_.read(words, enough, {last_words, run_.cancel});
     if (words.empty()) return ended("a greeting");
-    return Status(StatusCode::internal, who() + "printed \"" + quotable(words.substr(0, words.find('\n'))) +
-                                            "\", it must begin with \"" + trimmed(cad_reader_greeting()) + "\"");
-  }
-
-  /// The text without what terminals obey, and not too long.
-  static std::string quotable(std::string text) {
-    constexpr std::size_t longest = 200;
-    text.resize(std::min(text.size(), longest));
-    for (char& c : text)
-      if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
-    return text;
+    return Status(StatusCode::internal, who() + "printed " + quoted_words(words.substr(0, words.find('\n'))) +
+                                            ", it must begin with " + quoted_words(cad_reader_greeting()));
   }
 
   Status receive(std::string& bytes) {
@@ -120,12 +103,6 @@ class Conversation {
 };
 
 }  // namespace
-
-std::string cad_reader_greeting() {
-  std::string text = std::string(greeting_begin) + TESSERA_VERSION + ", models " + std::to_string(model_bytes_version);
-  text.resize(greeting_size - 1, ' ');
-  return text + '\n';
-}
 
 Result<Model> run_cad_reader(const CadReaderRun& run) {
   const std::string process = std::to_string(::getpid());

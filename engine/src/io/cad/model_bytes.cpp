@@ -1,5 +1,6 @@
 #include "io/cad/model_bytes.h"
 
+#include <cstdint>
 #include <vector>
 
 #include "base/text.h"
@@ -133,7 +134,7 @@ Result<Model> checked(Model model) {
 
 void put_status(ByteWriter& out, const Status& status) {
   out.put(status.code());
-  out.put(status.index());
+  out.put(std::int64_t{status.index()});
   out.put_text(status.message());
 }
 
@@ -169,11 +170,11 @@ std::string to_bytes(const Result<Model>& model) {
 Result<Model> model_from_bytes(std::string_view bytes) {
   ByteReader in(bytes);
   StatusCode code{};
-  std::ptrdiff_t index = 0;
+  std::int64_t index = 0;
   std::string message;
   Model model;
-  if (in.take(code) && in.take(index) && in.take_list(message)) {
-    if (code != StatusCode::ok) return Status(code, message, index);
+  if (in.take(code) && in.take(index) && in.take_list(message) && code <= StatusCode::internal) {
+    if (code != StatusCode::ok) return Status(code, message, static_cast<std::ptrdiff_t>(index));
     if (take_model(in, model)) return checked(std::move(model));
   }
   return damaged();

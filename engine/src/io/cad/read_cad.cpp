@@ -5,6 +5,7 @@
 
 #include "io/cad/cad_input.h"
 #include "io/cad/cad_reader.h"
+#include "io/cad/kept_model.h"
 #include "io/file/gzip.h"
 #include "io/step/read_step.h"
 #include "tessera/cad.h"
@@ -63,6 +64,10 @@ bool is_better(const Result<Model>& one, const Result<Model>& other) {
 }
 
 Result<Model> read(CadInput& input, CadFormat format, const CadOptions& options) {
+  if (input.is_kept_model()) {
+    const Result<std::string_view> bytes = input.bytes();
+    return bytes ? read_kept_model(*bytes, input.name()) : bytes.status();
+  }
   if (format != CadFormat::step || options.step_reader == StepReader::opencascade)
     return read_by_program(input, format, options);
   Result<Model> own = read_by_tessera(input, options);
