@@ -367,7 +367,7 @@ class PatchVertices {
     sink.stop();
   }
 
-  void write_shared() const {
+  [[gnu::noinline, gnu::cold]] void write_shared() const {
     for (int k = 0; k < staged_; k += L::width) {
       Batch value[2][3];
       for (int c = 0; c < outputs; ++c) value[c / 3][c % 3] = Batch::load_unaligned(stage_[c] + k);
