@@ -129,8 +129,16 @@ void store_hints(const ChordJob& job, int lane, const typename L::Batch (&corner
   const auto is_flat =
       (mixed + others > rounding(0x1p-12)) & (xsimd::abs(dot(product(bottom, left), diagonal)) <=
                                               rounding(0x1p-18) * (dot(bottom, bottom) + dot(diagonal, diagonal)));
-  L::store(job.hints + lane, xsimd::select(is_sweep, L::broadcast(may_be_sweep), zero) +
-                                 xsimd::select(is_flat, L::broadcast(may_be_flat), zero));
+  const auto extent = [](const Vector& a) {
+    return xsimd::max(xsimd::max(xsimd::abs(a.x), xsimd::abs(a.y)), xsimd::abs(a.z));
+  };
+  const Batch shortest = xsimd::min(xsimd::min(extent(bottom), extent(top)), xsimd::min(extent(left), extent(right)));
+  // Control points are below 1 in units of the block; packing and dividing moves two of them by far less than this.
+  const Batch moved = rounding(0x1p-22 * (Rational ? 2 : 1) * (job.degree_u + job.degree_v + 6));
+  const auto is_short = (shortest - moved) * L::load(job.unit + lane) <= L::broadcast(job.reach);
+  L::store(job.hints + lane, (xsimd::select(is_sweep, L::broadcast(may_be_sweep), zero) +
+                              xsimd::select(is_flat, L::broadcast(may_be_flat), zero)) +
+                                 xsimd::select(is_short, L::broadcast(may_be_point), zero));
 }
 
 template <class L, int Degree>

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "kernel/isa/block_lanes.h"
 
@@ -17,14 +18,17 @@ struct ChordJob {
   float* unit = nullptr;    ///< `[lane]`: a power of two above the largest coefficient
   float* size = nullptr;    ///< `[lane]`: the largest coordinate of a control point, at least 2^-120
   float* hints = nullptr;   ///< `[lane]`: a sum of ChordHint; or null
-  bool is_plane = false;    ///< rational patches without hints: all z are 0
+  /// Of may_be_point: the length of sides that welding may make points; none is as short as minus infinity.
+  float reach = -std::numeric_limits<float>::infinity();
+  bool is_plane = false;  ///< rational patches without hints: all z are 0
 };
 
-/// Kinds that a patch may be of, judging by its corners, where that would save cells.
+/// Kinds that a patch may be of, judging by its corners; the first three where that would save cells.
 enum ChordHint {
   may_be_sweep = 1,  ///< two opposite sides have parallel chords
   may_be_flat = 2,   ///< the corners lie in a plane
   may_gain = 4,      ///< rational patches: exact numerators may need far fewer cells
+  may_be_point = 8,  ///< a side may be no longer than ChordJob::reach from end to end, by its largest coordinate
 };
 /// The limit of the share of the cells that remain then, by the second derivatives at the corners.
 inline constexpr double likely_gain = 0.4;

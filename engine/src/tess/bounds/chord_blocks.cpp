@@ -21,6 +21,16 @@ float rounded_down(double x) {
   return double(nearest) > x ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1) : nearest;
 }
 
+constexpr float short_side = kernel::may_be_point;
+
+/// Whether all lanes have bounds of the kernel, and no hints.
+bool are_plain(const ChordBlocks::Lanes<float>& hints, std::span<const float, PatchSet::lanes> sizes) {
+  int others = 0;
+  for (std::size_t lane = 0; lane < hints.size(); ++lane)
+    others += int{hints[lane] != 0} | int{!(sizes[lane] >= 0)} | int{!(sizes[lane] < largest_size)};
+  return others == 0;
+}
+
 bool is_bounded_in_blocks(const BlockGroup& group) {
   return !group.rational || std::max(group.degree_u, group.degree_v) <= kernel::max_rational_degree;
 }
@@ -40,14 +50,16 @@ double pairs_of_products(const BlockGroup& group) {
 
 }  // namespace
 
-ChordBlocks::ChordBlocks(const PatchSet::Impl& set, bool by_doubles)
+ChordBlocks::ChordBlocks(const PatchSet::Impl& set, bool by_doubles, double reach)
     : by_doubles_(by_doubles),
+      reach_(reach > 0 ? rounded_up(reach) : -std::numeric_limits<float>::infinity()),
       kernels_(&kernel::default_kernels()),
       pieces_(set.lane_counts.size() * block_pieces),
       unit_(set.lane_counts.size() * lanes, 1.0f),
       size_(unit_.size(), -1.0f),
       slack_(unit_.size(), 0.0f),
-      source_(unit_.size(), Source::packed) {
+      source_(unit_.size(), Source::packed),
+      short_sides_(set.lane_counts.size()) {
   for (const BlockGroup& group : set.groups)  // bound() leaves some lanes of these groups unset
     if (by_doubles || !is_bounded_in_blocks(group))
       std::fill_n(pieces_.data() + group.first_block * block_pieces, group.block_count * block_pieces, 0.0f);
@@ -68,10 +80,22 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
          .pieces = pieces,
          .unit = unit_.data() + block * lanes,
          .size = size_.data() + block * lanes,
-         .hints = hints.data()});
+         .hints = hints.data(),
+         .reach = reach_});
+  if (in_block && are_plain(hints, std::span(size_).subspan(block * lanes).first<lanes>())) {
+    std::fill_n(source_.data() + block * lanes, lanes, Source::packed);
+    std::fill_n(slack_.data() + block * lanes, lanes, 0.0f);
+    short_sides_[block] = 0;
+    return;
+  }
   bool is_hinted = false;
+  std::uint32_t short_sides = in_block ? 0 : ~0u;
   for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     if (!in_block && !(wanted >> lane & 1u)) continue;
+    if (hints[lane] >= short_side) {
+      hints[lane] -= short_side;
+      short_sides |= 1u << lane;
+    }
     is_hinted |= hints[lane] != 0;
     float& size = size_[block * lanes + lane];
     const bool is_packed = in_block && size >= 0 && size < largest_size;
@@ -79,9 +103,11 @@ void ChordBlocks::bound(const PatchSet::Impl& set, std::size_t block, std::uint3
     slack_[block * lanes + lane] = 0;
     if (is_packed) continue;
     size = -1;
+    short_sides |= 1u << lane;
     hints[lane] = kernel::may_be_sweep | kernel::may_be_flat | kernel::may_gain;
     is_hinted = true;
   }
+  short_sides_[block] = static_cast<std::uint16_t>(short_sides);
   if (is_hinted) bound_exactly(set, block, hints, in_block ? ~0u : wanted);
 }
 

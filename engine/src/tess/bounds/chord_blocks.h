@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/aligned.h"
@@ -31,8 +32,8 @@ class ChordBlocks {
     sweep,   ///< like `packed`, for a scaled sweep: uv is 0, and so are its products
   };
   /// `by_doubles`: bounds all patches one by one, from double, for sets that reach so far that the rounding of packed
-  /// coefficients would be most of the bounds.
-  explicit ChordBlocks(const PatchSet::Impl& set, bool by_doubles = false);
+  /// coefficients would be most of the bounds. `reach`: see short_sides(); 0 for none.
+  explicit ChordBlocks(const PatchSet::Impl& set, bool by_doubles = false, double reach = 0);
 
   /// Finds the bounds of a block, at least of the lanes whose bits are set. Threads: any number, each with its own
   /// block.
@@ -44,6 +45,9 @@ class ChordBlocks {
     if (size < 0) return {};
     return (1 + 0x1p-22) * double(size);  // because the packed control points were rounded
   }
+  /// `[block]`: a bit for each lane, set for all patches that have a border no longer than the reach from end to end, by
+  /// its largest coordinate, and for others about which bound() does not know.
+  std::span<const std::uint16_t> short_sides() const { return short_sides_; }
   Source source(std::size_t block, std::size_t lane) const { return source_[block * lanes + lane]; }
   /// Returns the length to add to the chord: twice the distance of a patch from the sweep or the quadrilateral that it
   /// is bounded as.
@@ -111,12 +115,14 @@ class ChordBlocks {
   static constexpr std::size_t lanes = PatchSet::lanes, piece_count = 9, block_pieces = piece_count * 3 * lanes;
 
   bool by_doubles_;
+  float reach_;
   const kernel::KernelTable* kernels_;
   UnsetVector<float> pieces_;   ///< `[block][piece][uu, uv, vv][lane]`, in units of unit_
   AlignedVector<float> unit_;   ///< `[block][lane]`, powers of two
   AlignedVector<float> size_;   ///< `[block][lane]`, negative where unknown
   std::vector<float> slack_;    ///< `[block][lane]`
   std::vector<Source> source_;  ///< `[block][lane]`
+  std::vector<std::uint16_t> short_sides_;
 };
 
 }}  // namespace tessera::abi_0_1

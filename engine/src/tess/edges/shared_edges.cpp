@@ -76,7 +76,9 @@ constexpr std::size_t lanes = PatchSet::lanes;
 class EdgeFinder {
  public:
   EdgeFinder(const PatchSet::Impl& set, const BorderHashes& hashes, std::span<std::uint32_t> edges)
-      : set_(set), hashes_(hashes), edges_(edges), table_(set.patches.size()) {}
+      : set_(set), hashes_(hashes), edges_(edges), table_(set.patches.size()) {
+    only_borders_.reserve(2 * set.patches.size() + set.patches.size() / 4);
+  }
 
   void add(const BlockGroup& group, std::size_t block) {
     const std::uint32_t *const hashes = hashes_.of_block(block), *const patches = patches_of(block);
@@ -91,29 +93,42 @@ class EdgeFinder {
     for (std::size_t lane = 0; lane < count; ++lane) {
       const std::size_t patch = patches[lane];
       const SideMask collapsed = set_.collapsed[patch];
-      for (const Side side : all_sides) {
+      const auto add_side = [&](Side side) {
         const auto s = static_cast<std::size_t>(side);
-        if (!collapsed.has(side)) add(4 * patch + s, side, hashes[s * lanes + lane], met_[s][lane]);
-      }
+        const std::uint32_t met = met_[s][lane];
+        if (collapsed.has(side)) return;
+        if (met != no_id && edges_[met] != no_id)
+          join(4 * patch + s, met);
+        else
+          find(4 * patch + s, side, hashes[s * lanes + lane]);
+      };
+      add_side(Side::v0), add_side(Side::u1), add_side(Side::v1), add_side(Side::u0);
     }
   }
-  std::size_t count() const { return count_; }
+  std::vector<std::uint32_t> take_only_borders() { return std::move(only_borders_); }
 
  private:
   const std::uint32_t* patches_of(std::size_t block) const { return set_.lane_patches.data() + block * lanes; }
 
-  void add(std::size_t number, Side side, std::uint32_t hash, std::uint32_t met) {
-    if (met != no_id && edges_[met] != no_id) {
-      edges_[number] = edges_[met];
-      return;
-    }
+  /// Gives a border the edge of one with the same hash that is the same, or a new one.
+  [[gnu::noinline]] void find(std::size_t number, Side side, std::uint32_t hash) {
     const auto is_same = [&](std::size_t other) {
       const PackedBorder border(set_, number / 4, side), found(set_, other / 4, all_sides[other % 4]);
       return is_equal(border, found, false) || is_equal(border, found, true);
     };
     const std::size_t first = table_.find_or_add(hash, static_cast<std::uint32_t>(number), is_same);
-    edges_[number] = first == number ? static_cast<std::uint32_t>(count_++) : edges_[first];
+    if (first == number) {
+      edges_[number] = static_cast<std::uint32_t>(only_borders_.size());
+      only_borders_.push_back(static_cast<std::uint32_t>(number));
+    } else {
+      join(number, first);
+    }
     if (first < number) back_[static_cast<std::size_t>(side)] = number - first;
+  }
+  /// Gives a border the edge of another.
+  void join(std::size_t number, std::size_t other) {
+    const std::uint32_t edge = edges_[number] = edges_[other];
+    only_borders_[edge] = no_id;
   }
 
   /// Fills met_ with borders that are equal to the block's own. In rows of patches the next edge of a side is met as
@@ -174,7 +189,7 @@ class EdgeFinder {
   std::array<std::size_t, 4> back_{};  ///< `[side]`: how many borders back its last edge was met; 0: none was met
   /// `[side][lane]`: a border equal() to the block's own, or none.
   std::array<std::array<std::uint32_t, lanes>, 4> met_;
-  std::size_t count_ = 0;
+  std::vector<std::uint32_t> only_borders_;  ///< `[edge]`: its border, or none if it has more
 };
 
 }  // namespace
@@ -206,12 +221,14 @@ SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes)
   EdgeFinder finder(set, hashes, edges_);
   for (const BlockGroup& group : set.groups)
     for (std::size_t block = 0; block < group.block_count; ++block) finder.add(group, group.first_block + block);
-  count_ = finder.count();
+  only_borders_ = finder.take_only_borders();
+  count_ = only_borders_.size();
 }
 
 void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
   for (std::uint32_t& edge : edges_)
     if (edge != no_id) edge = numbers[edge];
+  only_borders_ = {};
 }
 
 }}  // namespace tessera::abi_0_1

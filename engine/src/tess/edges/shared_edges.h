@@ -96,11 +96,14 @@ class SharedEdges {
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
   std::span<const std::uint32_t> of_borders() const { return edges_; }  ///< by 4 * patch + side
+  /// `[edge]`: its border if there is only one, counting those of curves, or none; empty where that is not known.
+  std::span<const std::uint32_t> only_borders() const { return only_borders_; }
   /// Gives each edge a new number, below count(), or none.
   void renumber(std::span<const std::uint32_t> numbers);
 
  private:
-  std::vector<std::uint32_t> edges_;  ///< `[patch][side]`
+  std::vector<std::uint32_t> edges_;         ///< `[patch][side]`
+  std::vector<std::uint32_t> only_borders_;  ///< `[edge]`
   std::size_t count_ = 0;
 };
 

@@ -10,8 +10,8 @@
 #include "base/union_find.h"
 #include "parallel/parallel_for.h"
 #include "tess/edges/numbered_borders.h"
-#include "tess/edges/short_sides.h"
 #include "tess/edges/side_curve.h"
+#include "tess/edges/thin_patches.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -39,30 +39,19 @@ void for_all(std::size_t count, const Visit& visit) {
 class Welder {
  public:
   Welder(const PatchSet::Impl& set, std::span<const PatchShape> shapes, const WeldRules& rules, SharedEdges& edges)
-      : set_(set),
-        shapes_(shapes),
-        rules_(rules),
-        edges_(edges),
-        leading_(edges.count(), no_id),
-        has_more_(edges.count(), 0) {
-    std::uint32_t* const leading = leading_.data();
-    std::uint8_t* const has_more = has_more_.data();
-    for_borders([=](std::uint32_t border, std::uint32_t edge) {
-      has_more[edge] = leading[edge] != no_id;
-      leading[edge] = std::min(leading[edge], border);
-    });
-    if (rules.f64_patches.empty()) return;
-    for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (is_f64(border) && leads(border, leading_[edge])) leading_[edge] = border;
-    });
-  }
+      : set_(set), shapes_(shapes), rules_(rules), edges_(edges) {}
 
   Weld run(std::span<const double> roundings) {
+    // Where only edges with a single border are joined, most sets need no more than the list of these.
+    const bool are_listed = rules_.is_relative && rules_.f64_patches.empty() && !edges_.only_borders().empty() &&
+                            std::ranges::none_of(shapes_, &PatchShape::is_curve);
+    if (!are_listed) find_leading();
     const bool joins = rules_.reach > 0 && join_edges();
+    const std::vector<std::uint32_t> points = rules_.reach > 0 ? find_points() : std::vector<std::uint32_t>();
+    if (!joins && points.empty() && rules_.f64_patches.empty()) return {};
+    if (are_listed) find_leading();
     if (joins) choose_givers();
-    const bool makes_points = rules_.reach > 0 && find_poles(roundings);
-    if (!joins && !makes_points && rules_.f64_patches.empty()) return {};
-    if (!makes_points) is_pole_.assign(leading_.size(), 0);
+    make_poles(points);
     find_shapes();
     UnionFind corners(4 * set_.patches.size());
     join_corners(corners);
@@ -75,6 +64,28 @@ class Welder {
   }
 
  private:
+  /// Finds the leading border of each edge, and which edges have more than one.
+  void find_leading() {
+    leading_.assign(edges_.count(), no_id);
+    has_more_.assign(edges_.count(), 0);
+    std::uint32_t* const leading = leading_.data();
+    std::uint8_t* const has_more = has_more_.data();
+    for_borders([=](std::uint32_t border, std::uint32_t edge) {
+      has_more[edge] = leading[edge] != no_id;
+      leading[edge] = std::min(leading[edge], border);
+    });
+    if (rules_.f64_patches.empty()) return;
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (is_f64(border) && leads(border, leading_[edge])) leading_[edge] = border;
+    });
+  }
+  /// Whether an edge with a leading border has others.
+  bool has_more(std::uint32_t edge) const { return !has_more_.empty() && has_more_[edge]; }
+  /// The leading border of an edge that may be joined.
+  std::uint32_t leading(std::uint32_t edge) const {
+    return leading_.empty() ? edges_.only_borders()[edge] : leading_[edge];
+  }
+
   SideCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
   std::uint32_t edge_of_border(std::uint32_t border) const { return edges_.edge(patch_of(border), side_of(border)); }
   /// Whether the vertices of a border or corner come from double control points.
@@ -104,7 +115,7 @@ class Welder {
 
   /// Returns how far apart an edge and another that is joined to it may be.
   double reach(std::uint32_t edge) const {
-    return rules_.is_relative ? std::min(rules_.reach, curve(leading_[edge]).box().diagonal() / 8) : rules_.reach;
+    return rules_.is_relative ? std::min(rules_.reach, curve(leading(edge)).box().diagonal() / 8) : rules_.reach;
   }
   /// Whether an edge is the opposite border of a border's patch, and none of the rows between them lies farther away
   /// than the reach.
@@ -116,7 +127,7 @@ class Welder {
 
   /// Compares an edge with another, and keeps the other if it is nearer than those before.
   void compare(std::uint32_t other, Nearest& nearest) const {
-    const std::uint32_t a = leading_[nearest.edge], b = leading_[other];
+    const std::uint32_t a = leading(nearest.edge), b = leading(other);
     const SideCurve border = curve(a), met = curve(b);
     const double reach = std::min(this->reach(nearest.edge), this->reach(other));
     for (const bool turned : {false, true}) {
@@ -125,7 +136,7 @@ class Welder {
       const double distance = distance_bound(border, met, turned);
       if (!(distance <= reach)) continue;
       const bool is_nearer = nearest.other == no_id || distance < nearest.distance ||
-                             (distance == nearest.distance && comes_before(met, curve(leading_[nearest.other])));
+                             (distance == nearest.distance && comes_before(met, curve(leading(nearest.other))));
       if (is_nearer && !is_thin(a, other)) nearest = {nearest.edge, other, turned, distance};
     }
   }
@@ -133,10 +144,12 @@ class Welder {
   /// Returns the edges that may be joined, in the order of their places.
   std::vector<EdgePlace> places() const {
     std::vector<EdgePlace> places;
-    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
-      if (leading_[edge] == no_id || (has_more_[edge] && rules_.is_relative)) continue;
-      if (!rules_.stay.empty() && rules_.stay[leading_[edge]]) continue;
-      const auto [first, last] = ends_of(leading_[edge]);
+    places.reserve(64);
+    for (std::uint32_t edge = 0; edge < edges_.count(); ++edge) {
+      const std::uint32_t border = leading(edge);
+      if (border == no_id || (rules_.is_relative && has_more(edge))) continue;
+      if (!rules_.stay.empty() && rules_.stay[border]) continue;
+      const auto [first, last] = ends_of(border);
       const BezierPatch& patch = set_.patches[patch_of(first)];
       places.emplace_back(edge,
                           0.5 * (corner_of(patch, first) - set_.origin) + 0.5 * (corner_of(patch, last) - set_.origin));
@@ -149,7 +162,7 @@ class Welder {
   Nearest nearest_to(std::span<const EdgePlace> places, std::size_t k) const {
     const double reach = 1.001 * rules_.reach;  // compare() decides
     Nearest nearest{places[k].edge};
-    if (has_more_[nearest.edge]) return nearest;
+    if (has_more(nearest.edge)) return nearest;
     const auto look = [&](const EdgePlace& other) {
       if (!(std::abs(other.along - places[k].along) <= reach)) return false;
       if (max_abs(other.middle - places[k].middle) <= reach) compare(other.edge, nearest);
@@ -169,7 +182,7 @@ class Welder {
     for_all(places.size(), [&](std::size_t k) { found[k] = nearest_to(places, k); });
     for (const Nearest& nearest : found) {
       if (nearest.other == no_id) continue;
-      if (!joined_) joined_.emplace(leading_.size());
+      if (!joined_) joined_.emplace(edges_.count());
       joined_->unite(nearest.edge, nearest.other, nearest.reversed);
     }
     return joined_.has_value();
@@ -206,25 +219,28 @@ class Welder {
     }
     return curve(border).box().diagonal() <= most;
   }
-  /// Finds the edges that become points. Returns whether there are any.
-  bool find_poles(std::span<const double> roundings) {
-    const double most = rules_.reach + 2 * *std::max_element(roundings.begin(), roundings.end());
-    std::vector<std::vector<std::uint32_t>> points(set_.lane_counts.size());  // borders, by block
-    for_all(points.size(), [&](std::size_t block) {
-      if (!(shortest_side(set_, block) <= most)) return;
-      const std::uint32_t* const patches = set_.lane_patches.data() + block * PatchSet::lanes;
-      for (std::size_t lane = 0; lane < set_.lane_counts[block]; ++lane)
-        for (std::uint32_t border = 4 * patches[lane]; border < 4 * patches[lane] + 4; ++border)
-          if (edge_of_border(border) != no_id && !shapes_[patches[lane]].is_curve && is_point(border))
-            points[block].push_back(border);
+  /// Returns the borders that become points.
+  std::vector<std::uint32_t> find_points() const {
+    std::vector<std::uint32_t> blocks;  // those that may have any
+    for (std::uint32_t block = 0; block < rules_.short_sides.size(); ++block)
+      if (rules_.short_sides[block] != 0) blocks.push_back(block);
+    std::vector<std::vector<std::uint32_t>> found(blocks.size());
+    for_all(blocks.size(), [&](std::size_t k) {
+      const std::uint32_t* const patches = set_.lane_patches.data() + blocks[k] * std::size_t{PatchSet::lanes};
+      for (std::size_t lane = 0; lane < set_.lane_counts[blocks[k]]; ++lane)
+        if ((rules_.short_sides[blocks[k]] >> lane & 1u) && !shapes_[patches[lane]].is_curve)
+          for (std::uint32_t border = 4 * patches[lane]; border < 4 * patches[lane] + 4; ++border)
+            if (edge_of_border(border) != no_id && is_point(border)) found[k].push_back(border);
     });
-    for (const std::vector<std::uint32_t>& borders : points)
-      for (const std::uint32_t border : borders) {
-        is_pole_.resize(leading_.size(), 0);
-        is_pole_[canonical(edge_of_border(border))] = 1;
-      }
-    if (!is_pole_.empty()) keep_patches();
-    return !is_pole_.empty();
+    std::vector<std::uint32_t> points;
+    for (const std::vector<std::uint32_t>& borders : found) points.insert(points.end(), borders.begin(), borders.end());
+    return points;
+  }
+  /// Makes the edges of borders points, unless too little would be left of their patches.
+  void make_poles(std::span<const std::uint32_t> points) {
+    is_pole_.assign(leading_.size(), 0);
+    for (const std::uint32_t border : points) is_pole_[canonical(edge_of_border(border))] = 1;
+    if (!points.empty()) keep_patches();
   }
   /// Whether a border is a point, by itself or by welding.
   bool is_made_point(std::uint32_t border) {
@@ -353,38 +369,6 @@ class Welder {
 Weld weld_borders(const PatchSet::Impl& set, std::span<const PatchShape> shapes, std::span<const double> roundings,
                   const WeldRules& rules, SharedEdges& edges) {
   return Welder(set, shapes, rules, edges).run(roundings);
-}
-
-void measure_displacements(const PatchSet::Impl& set, const VertexCopies& copies, std::span<const double> roundings,
-                           FunctionRef<bool(std::size_t patch)> wanted, std::span<double> displacements,
-                           bool same_bits_stay) {
-  const auto moved = [&](std::uint32_t to, std::uint32_t from, double distance) {
-    double& most = displacements[patch_of(to)];
-    most = std::max(most, distance + roundings[patch_of(from)]);
-  };
-  const auto corner = [&](std::uint32_t at) { return corner_of(set.patches[patch_of(at)], at); };
-  const auto packed = [&](std::uint32_t border) { return PackedBorder(set, patch_of(border), side_of(border)); };
-  for (const VertexCopies::Border& copy : copies.borders) {
-    if (!wanted(patch_of(copy.to))) continue;
-    const auto is_same = [&] { return equal(packed(copy.to), packed(copy.from), copy.reversed); };
-    if (same_bits_stay && is_same()) continue;
-    const double distance = distance_bound(curve_of(set, copy.to), curve_of(set, copy.from), copy.reversed);
-    if (distance > 0 || !is_same()) moved(copy.to, copy.from, distance);
-  }
-  for (const VertexCopies::Corner& copy : copies.corners) {
-    if (!wanted(patch_of(copy.to))) continue;
-    if (same_bits_stay && packed_corner(set, copy.to) == packed_corner(set, copy.from)) continue;
-    const double distance = length(corner(copy.to) - corner(copy.from));
-    if (distance > 0) moved(copy.to, copy.from, distance);
-  }
-  for (const VertexCopies::Corner& pole : copies.poles) {
-    if (!wanted(patch_of(pole.to))) continue;
-    if (same_bits_stay && packed_corner(set, pole.to) == packed_corner(set, pole.from)) continue;
-    const SideCurve border = curve_of(set, pole.to);
-    for (int k = 0; k <= border.degree(); ++k)
-      if (const double distance = length(border.point(k) - corner(pole.from)); distance > 0)
-        moved(pole.to, pole.from, distance);
-  }
 }
 
 }}  // namespace tessera::abi_0_1

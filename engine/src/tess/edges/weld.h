@@ -59,6 +59,9 @@ struct WeldRules {
   std::span<const std::uint8_t> f64_patches = {};
   /// `[4 * patch + side]`: 1 for borders that are joined by their bits alone; empty if for none.
   std::span<const std::uint8_t> stay = {};
+  /// ChordBlocks::short_sides() for this reach: no other patches have borders that become points. May be empty if the
+  /// reach is 0.
+  std::span<const std::uint16_t> short_sides = {};
 };
 
 /// Welds borders.

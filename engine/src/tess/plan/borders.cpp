@@ -26,6 +26,7 @@ void Borders::weld_by(const PatchNeeds& needs, const EdgeRuns* runs) {
   if (runs) stay = runs->borders_that_meet(set.patches.size());
   rules.stay = stay;
   rules.f64_patches = options.f64_patches;
+  rules.short_sides = needs.chords().short_sides();
   if (options.f64_positions) {
     // Far from zero the last bits of doubles affect the floats of coordinates that are small relative to the origin.
     const Box3 box = set.model_box();

@@ -10,7 +10,7 @@
 #include "block/patch_trims.h"
 #include "tess/bounds/rounded_up.h"
 #include "tess/edges/edge_needs.h"
-#include "tess/edges/short_sides.h"
+#include "tess/edges/thin_patches.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {

@@ -34,7 +34,7 @@ PatchNeeds::PatchNeeds(const PatchSet::Impl& set, const PlannerOptions& options)
     : set_(&set),
       options_(options),
       fit_error_(set.fit_error.distance),
-      chords_(set, options.f64_positions),
+      chords_(set, options.f64_positions, options.weld.reach),
       shapes_(set.patches.size()),
       roundings_(set.patches.size()) {
   if (keeps_turnings(options)) own_turnings_.resize(shapes_.size());
@@ -46,10 +46,14 @@ void PatchNeeds::bound_block(std::size_t block) {
   const BlockGroup& group = set.group_of_block(block);
   const PatchShape whole{
       static_cast<std::uint8_t>(group.degree_u), static_cast<std::uint8_t>(group.degree_v), {}, false};
-  for (std::size_t lane = 0; lane < set.lane_counts[block]; ++lane) {
+  const bool are_packed = !options_.f64_positions && options_.f64_patches.empty();
+  const double per_size = vertex_rounding(group.degree_u, group.degree_v, group.rational, 1);
+  for (std::uint32_t lane = 0; lane < set.lane_counts[block]; ++lane) {
     const std::size_t k = set.lane_patches[block * PatchSet::lanes + lane];
     shapes_[k] = set.collapsed[k].any() ? PatchShape::of(set.patches[k], set.collapsed[k]) : whole;
-    roundings_[k] = own_rounding(group, set.slots[k]);
+    const std::optional<double> size = are_packed ? chords_.size(block, lane) : std::nullopt;
+    roundings_[k] = size ? per_size * *size + chords_.slack(block, lane)
+                         : own_rounding(group, {static_cast<std::uint32_t>(block), lane});
   }
 }
 

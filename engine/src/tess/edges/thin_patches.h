@@ -1,5 +1,5 @@
 #pragma once
-// Tells which patches have short sides, and which are thin strips or needles.
+// Tells which patches are thin strips or needles.
 
 #include <cstddef>
 
@@ -7,10 +7,6 @@
 #include "tess/cells/patch_side.h"
 
 namespace tessera { inline namespace abi_0_1 {
-
-/// Returns the length of the shortest side in a block, from end to end, as the largest coordinate of the packed
-/// corners' difference.
-float shortest_side(const PatchSet::Impl& set, std::size_t block);
 
 /// Whether no control point of a patch lies farther than `reach` from the one of a side that it is across from.
 bool is_thin(const BezierPatch& patch, Side side, double reach);
