@@ -44,6 +44,7 @@ struct ExactChordJob {
   /// most near 1.
   const double* net = nullptr;
   int degree_u = 0, degree_v = 0;
+  bool rational = true;         ///< false: all weights are 1, and are not read
   int lanes = block_lanes;      ///< only the first ones are meant; others may be written
   bool any_patch = false;       ///< fill pieces also of patches that are no sweeps
   double* deviation = nullptr;  ///< `[lane]`: how far the patch may lie from a scaled sweep; infinite if it is none

@@ -14,13 +14,13 @@ class ExactChords {
   ExactChords(const ExactChordJob& job, int lane) : job_(job), lane_(lane), m_(job.degree_u), n_(job.degree_v) {
     lightest_ = L::broadcast(std::numeric_limits<double>::infinity());
     for (int k = 0; k < (m_ + 1) * (n_ + 1); ++k) {
-      weight_[k] = L::load(job.net + (k * 4 + 3) * block_lanes + lane);
+      weight_[k] = job.rational ? L::load(job.net + (k * 4 + 3) * block_lanes + lane) : L::broadcast(1);
       lightest_ = xsimd::min(lightest_, weight_[k]);
       heaviest_ = xsimd::max(heaviest_, weight_[k]);
       Batch squared = L::broadcast(0);
       for (int c = 0; c < 3; ++c) {
         const Batch a = L::load(job.net + (k * 4 + c) * block_lanes + lane);
-        point_[c][k] = a / weight_[k];
+        point_[c][k] = job.rational ? a / weight_[k] : a;
         largest_ = xsimd::max(largest_, xsimd::abs(a));
         squared = squared + point_[c][k] * point_[c][k];
       }
@@ -93,6 +93,7 @@ class ExactChords {
           off = off + d * d;
         }
         squared = xsimd::max(squared, off);
+        if (!job_.rational) continue;
         skew = xsimd::max(skew, xsimd::abs(weight(i, 0) * weight(0, j) * unit / weight(i, j) - L::broadcast(1)));
       }
     }

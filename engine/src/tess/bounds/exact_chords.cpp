@@ -45,12 +45,10 @@ void pack(const BezierPatch& patch, double* lane) {
     RelativeNet(patch, centre).write(lane);
     return;
   }
-  for (const Vec3& point : patch.points()) {
+  for (const Vec3& point : patch.points()) {  // without weights, see ExactChordJob::rational
     const Vec3 p = point - centre;
-    for (const double value : {p.x, p.y, p.z, 1.0}) {
-      *lane = value;
-      lane += PatchSet::lanes;
-    }
+    lane[0] = p.x, lane[PatchSet::lanes] = p.y, lane[2 * PatchSet::lanes] = p.z;
+    lane += 4 * PatchSet::lanes;
   }
 }
 
@@ -145,6 +143,7 @@ void ChordBlocks::find_exact(const PatchSet::Impl& set, std::size_t block, bool 
   kernel::default_kernels().bound_exact_chords({.net = net.data(),
                                                 .degree_u = group.degree_u,
                                                 .degree_v = group.degree_v,
+                                                .rational = group.rational,
                                                 .lanes = static_cast<int>(count),
                                                 .any_patch = any_patch,
                                                 .deviation = exact.deviations.data(),

@@ -27,6 +27,9 @@ std::optional<double> flat_quad_deviation(const BezierPatch& patch) {
   const double size = std::max(length(diagonals[0]), length(diagonals[1])), area = length(across);
   if (!(area > 0 && std::isfinite(area))) return {};
   const Vec3 normal = (1 / area) * across;
+  const auto height = [&](const Vec3& p) { return std::abs(dot(p - corner[0], normal)); };
+  // Most patches with corners in a plane bend away from it, and need no more than that.
+  if (!std::ranges::all_of(patch.points(), [&](const Vec3& p) { return height(p) <= tolerance * size; })) return {};
   std::array<Vec3, 4> inward;
   for (std::size_t k = 0; k < 4; ++k) {
     const Vec3 side = corner[(k + 1) % 4] - corner[k];
@@ -38,7 +41,7 @@ std::optional<double> flat_quad_deviation(const BezierPatch& patch) {
   for (int i = 0; i <= m && most <= tolerance * size; ++i)
     for (int j = 0; j <= n; ++j) {
       const Vec3& p = patch.point(i, j);
-      double off = std::abs(dot(p - corner[0], normal));
+      double off = height(p);
       for (std::size_t k = 0; k < 4; ++k) off += std::max(0.0, -dot(p - corner[k], inward[k]));
       add(off);
       if (j == 0) add(distance_to_segment(p, corner[0], corner[1]));
