@@ -67,6 +67,8 @@ class Segments {
   constexpr int rate() const { return static_cast<int>(word_ & ((1u << rate_bits) - 1)); }
   /// Returns a number that differs for different segments; below 2^13 if they are uniform.
   constexpr std::uint64_t key() const { return word_; }
+  /// Whether all segments are uniform whose keys' bits are in `keys`.
+  static constexpr bool are_uniform(std::uint64_t keys) { return keys >> rate_bits == 0; }
   /// Whether 1/2 lies inside no segment; graded segments have a point there only if the halves have numbers of their
   /// own. Without a branch, because odd rates come at random.
   constexpr bool parts_halves() const {

@@ -36,13 +36,14 @@ struct Division {
   /// Divides a patch. `asked`: the segments that the patch needs; none of the segments of `borders` may be longer.
   static Division of(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
     Division division;
-    division.set(shape, asked, borders);
+    division.border = borders;
+    division.set(shape, asked);
     return division;
   }
-  /// Does what of() does in place, because a copy of a new record would wait for its stores.
-  void set(const PatchShape& shape, PatchSegments asked, const std::array<Segments, 4>& borders) {
+  /// Does what of() does in place, after the borders' segments were set: a copy of a new record would wait for its
+  /// stores.
+  void set(const PatchShape& shape, PatchSegments asked) {
     inner = {asked.u.rate() > 1 ? asked.u : 2, asked.v.rate() > 1 ? asked.v : 2};
-    border = borders;
     collapsed = shape.collapsed;
     empty = shape.is_curve;
     across_u = false;

@@ -13,20 +13,39 @@ namespace tessera { inline namespace abi_0_1 {
 
 constexpr Segments along(PatchSegments patch, Side side) { return along_side(side, patch); }
 
-/// The needs of patches with uniform segments.
-struct EdgeNeeds {
-  std::uint16_t most = 1;  ///< the largest rate of the patches
-  /// 1: the edge's rate must be even, for a patch whose triangles must not cross the middle.
-  std::uint8_t is_even = 0;
-  std::uint8_t patches = 0;  ///< 0, 1, or 2 for more; twice the same one counts as two
-
-  /// `never`: 1 for a patch none of whose triangles may cross the middle.
-  void add(Segments along, std::uint16_t never) {
-    most = std::max(most, static_cast<std::uint16_t>(along.rate()));
-    is_even = static_cast<std::uint8_t>(is_even | (never & along.parts_halves()));
-    patches = static_cast<std::uint8_t>(1 + (patches != 0));
+/// The needs of patches with uniform segments. Stored as one word: a loop over all borders adds to it.
+class EdgeNeeds {
+ public:
+  EdgeNeeds() = default;
+  /// The needs of one patch. `never`: 1 if none of its triangles may cross the middle.
+  EdgeNeeds(Segments along, std::uint32_t never) : word_(static_cast<std::uint32_t>(along.rate()) << rate_bit) {
+    const std::uint32_t is_even =
+        along.is_uniform() ? ~static_cast<std::uint32_t>(along.key()) & 1 : std::uint32_t{along.parts_halves()};
+    word_ |= one_patch | (never & is_even);
   }
-  Segments segments() const { return most + (most & is_even); }
+  /// Adds the needs of one patch.
+  void add(EdgeNeeds one) {
+    word_ = std::max(word_, one.word_) | ((word_ | one.word_) & flags) | (word_ & one_patch) << 1;
+  }
+  /// Takes the rate of others if it is larger, and an even one if they need it.
+  void take(EdgeNeeds others) {
+    word_ = std::max(word_ & ~flags, others.word_ & ~flags) | (word_ & flags) | (others.word_ & even);
+  }
+  void make_even() { word_ |= even; }
+
+  int most() const { return static_cast<int>(word_ >> rate_bit); }  ///< the largest rate of the patches
+  /// 1: the edge's rate must be even, for a patch whose triangles must not cross the middle.
+  std::uint32_t is_even() const { return word_ & even; }
+  std::uint32_t rate() const { return (word_ >> rate_bit) + (word_ >> rate_bit & is_even()); }
+  Segments segments() const { return static_cast<int>(rate()); }
+  /// Whether one patch was added; twice the same one counts as two.
+  bool has_one_patch() const { return (word_ & patches) == one_patch; }
+
+ private:
+  static constexpr int rate_bit = 16;
+  static constexpr std::uint32_t even = 1, one_patch = 2, patches = 6, flags = 7;
+
+  std::uint32_t word_ = 1u << rate_bit;
 };
 
 /// The largest rates in the eighths of an edge, in the direction of its first border. Needs may be added in any order.
@@ -55,7 +74,7 @@ class PieceNeeds {
   bool empty() const { return needs_[0].numerator == 0; }  ///< whether no patch with an area has needs
   /// Whether uniform segments have all of the rates, and no more.
   bool is_uniform() const { return empty() || (leading_.rate() > 0 && leading_.is_uniform()); }
-  Segments segments(bool against, std::uint16_t is_even) const {
+  Segments segments(bool against, std::uint32_t is_even) const {
     if (empty()) return 1;
     const bool is_known = leading_.rate() > 0 && (is_even == 0 || leading_.parts_halves());
     Segments along = leading_;

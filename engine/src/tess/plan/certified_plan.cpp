@@ -6,41 +6,85 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
+namespace {
+
+/// Sums of the vertices, triangles and quads of patches.
+struct Sums {
+  std::size_t vertices = 0, triangles = 0, quads = 0;
+
+  void add(std::size_t more_vertices, std::size_t more_triangles, std::size_t more_quads) {
+    vertices = saturated_sum(vertices, more_vertices);
+    triangles = saturated_sum(triangles, more_triangles);
+    quads = saturated_sum(quads, more_quads);
+  }
+};
+
+/// What loops cut out of patches and what edges add to them, patch by patch.
+class ExtraCounts {
+ public:
+  ExtraCounts(std::span<const CutPatch> cuts, const ClosedEdges* closed) : cuts_(cuts) {
+    if (closed) edits_ = closed->edits;
+  }
+  /// The first patch that add() has something for, or none.
+  std::size_t next() const {
+    constexpr auto none = static_cast<std::size_t>(-1);
+    return std::min<std::size_t>(cuts_.empty() ? none : cuts_.front().patch,
+                                 edits_.empty() ? none : edits_.front().patch);
+  }
+  /// Adds what the next patch has. Returns the one after it.
+  [[gnu::noinline]] std::size_t add(Sums& sums) {
+    const std::size_t patch = next();
+    if (!edits_.empty() && edits_.front().patch == patch) {
+      sums.add(edits_.front().vertices.size(), edits_.front().added.size(), 0);
+      edits_ = edits_.subspan(1);
+    }
+    if (!cuts_.empty() && cuts_.front().patch == patch) {
+      sums.add(cuts_.front().vertices.size(), cuts_.front().triangles.size(), cuts_.front().quad_count());
+      cuts_ = cuts_.subspan(1);
+    }
+    return next();
+  }
+
+ private:
+  std::span<const CutPatch> cuts_;
+  std::span<const PatchEdit> edits_;
+};
+
+}  // namespace
+
 void CertifiedPlan::lay_out() {
   const std::size_t patches = patches_.divisions.size();
   for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
-  std::size_t vertices = 0, triangles = 0, quads = 0;
-  const auto add = [](std::size_t& sum, std::size_t count) { sum = saturated_sum(sum, count); };
-  const std::span<const CutPatch> cuts = this->cuts();
-  auto cut = cuts.begin();
-  std::size_t next_cut = cuts.empty() ? patches : cut->patch;
+  std::size_t *const first_vertex = first_vertex_.data(), *const first_triangle = first_triangle_.data(),
+                     *const first_quad = first_quad_.data();
+  const Division* const divisions = patches_.divisions.data();
   const bool shares = shares_vertices();
-  const std::span<const PatchEdit> edits =
-      closed() ? std::span<const PatchEdit>(closed()->edits) : std::span<const PatchEdit>();
-  auto edit = edits.begin();
+  ExtraCounts extra(cuts(), closed());
+  std::size_t next_extra = extra.next();
+  Sums sums;
+  // Most patches have inner points and vertices of their own; the loop has no calls for these.
+  const auto add_special = [&](std::size_t patch) __attribute__((noinline)) {
+    const Division& division = divisions[patch];
+    if (division.empty) return;
+    sums.add(division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count()),
+             division.triangle_count(), division.cell_count());
+  };
   for (std::size_t patch = 0; patch < patches; ++patch) {
-    const Division& division = patches_.divisions[patch];
-    first_vertex_[patch] = vertices;
-    first_triangle_[patch] = triangles;
-    first_quad_[patch] = quads;
-    if (!division.empty)
-      add(vertices, division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count()));
-    add(triangles, division.triangle_count());
-    add(quads, division.cell_count());
-    if (edit != edits.end() && edit->patch == patch) {
-      add(vertices, edit->vertices.size());
-      add(triangles, edit->added.size());
-      ++edit;
+    const Division& division = divisions[patch];
+    first_vertex[patch] = sums.vertices;
+    first_triangle[patch] = sums.triangles;
+    first_quad[patch] = sums.quads;
+    if (shares || division.empty || division.collapsed.any() || !division.has_inner_points()) {
+      add_special(patch);
+    } else {
+      const std::size_t inner = division.inner_count(), ring = division.ring_count();
+      sums.add(inner + ring, ring + 2 * (inner - 1), division.cell_count());
     }
-    if (patch != next_cut) continue;
-    add(vertices, cut->vertices.size());
-    add(triangles, cut->triangles.size());
-    add(quads, cut->quad_count());
-    next_cut = ++cut == cuts.end() ? patches : cut->patch;
+    if (patch == next_extra) next_extra = extra.add(sums);
   }
-  first_vertex_[patches] = vertices;
-  first_triangle_[patches] = triangles;
-  first_quad_[patches] = quads;
+  first_vertex[patches] = sums.vertices;
+  first_triangle[patches] = sums.triangles;
+  first_quad[patches] = sums.quads;
 }
 
 bool CertifiedPlan::has_triangles_of(const CertifiedPlan& other) const {

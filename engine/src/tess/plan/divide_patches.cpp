@@ -35,24 +35,27 @@ double crossing_distance(const PatchNeeds& needs, PatchSegments segments, std::s
 class BorderSegments {
  public:
   BorderSegments(std::span<const PatchSegments> segments, const SharedEdges& edges)
-      : segments_(segments), edges_(edges), has_needs_(segments.size(), 0), needs_(edges.count()) {}
+      : segments_(segments), edges_(edges), needs_(edges.count()) {}
 
   /// Adds the needs of a patch. `never`: 1 if its borders must be even where it has an even rate.
-  void add(std::size_t patch, std::uint16_t never) {
-    has_needs_[patch] = 1;
-    for (const Side side : all_sides) {
-      const std::uint32_t edge = edges_.edge(patch, side);
-      if (edge != no_id) needs_[edge].add(along(segments_[patch], side), never);
-    }
+  void add(std::size_t patch, std::uint32_t never) {
+    const EdgeNeeds u(segments_[patch].u, never), v(segments_[patch].v, never);
+    const std::uint32_t* const edges = edges_.of_borders().data() + 4 * patch;
+    EdgeNeeds* const needs = needs_.data();
+    const auto add_to = [needs](std::uint32_t edge, EdgeNeeds one) {
+      if (edge != no_id) needs[edge].add(one);
+    };
+    add_to(edges[0], u), add_to(edges[1], v), add_to(edges[2], u), add_to(edges[3], v);
   }
   /// Counts the needs of each edge in its eighths, for segments that are not uniform. `against`: for each border,
-  /// whether it runs against the edge.
-  void part(std::vector<std::uint8_t> against) {
+  /// whether it runs against the edge. `has_needs`: whether a patch was added.
+  template <class HasNeeds>
+  void part(std::vector<std::uint8_t> against, const HasNeeds& has_needs) {
     against_ = std::move(against);
     pieces_.resize(edges_.count());
     for (std::size_t k = 0; k < segments_.size(); ++k)
       for (const Side side : all_sides)
-        if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && has_needs_[k])
+        if (const std::uint32_t edge = edges_.edge(k, side); edge != no_id && has_needs(k))
           pieces_[edge].add(along(segments_[k], side), is_against(k, side));
   }
   /// Gives the edges of each group the needs of all of them, where these are uniform. Other groups keep their own:
@@ -65,13 +68,10 @@ class BorderSegments {
     for (const std::vector<std::uint32_t>& group : groups_) {
       if (!std::ranges::all_of(group, [this](std::uint32_t edge) { return is_uniform(edge); })) continue;
       EdgeNeeds all;
+      for (const std::uint32_t edge : group) all.take(needs_[edge]);
       for (const std::uint32_t edge : group) {
-        all.most = std::max(all.most, needs_[edge].most);
-        all.is_even |= needs_[edge].is_even;
-      }
-      for (const std::uint32_t edge : group) {
-        needs_[edge].most = all.most, needs_[edge].is_even = all.is_even;
-        if (!pieces_.empty() && !pieces_[edge].empty()) pieces_[edge].add(all.most, false);
+        needs_[edge].take(all);
+        if (!pieces_.empty() && !pieces_[edge].empty()) pieces_[edge].add(all.most(), false);
       }
     }
   }
@@ -79,46 +79,56 @@ class BorderSegments {
   bool is_even_edge(std::size_t patch, Side side) const {
     return along(segments_[patch], side).parts_halves() && edges_.edge(patch, side) != no_id;
   }
-  void make_even(std::size_t patch, Side side) { needs_[edges_.edge(patch, side)].is_even = 1; }
+  void make_even(std::size_t patch, Side side) { needs_[edges_.edge(patch, side)].make_even(); }
 
   /// Returns how many segments lie on edges with one border.
   std::uint32_t open_edges() const {
     std::uint32_t count = 0;
-    for (std::uint32_t edge = 0; edge < needs_.size(); ++edge)
-      if (needs_[edge].patches == 1) count += static_cast<std::uint32_t>(of_edge(edge, false).rate());
+    if (pieces_.empty()) {
+      for (const EdgeNeeds needs : needs_)
+        if (needs.has_one_patch()) count += needs.rate();
+    } else {
+      for (std::uint32_t edge = 0; edge < needs_.size(); ++edge)
+        if (needs_[edge].has_one_patch()) count += static_cast<std::uint32_t>(of_edge(edge, false).rate());
+    }
     return count;
   }
 
-  /// Returns the segments of a patch's four borders.
-  std::array<Segments, 4> of(std::size_t patch) const {
-    if (pieces_.empty()) {
-      const auto segments = [&](Side side) {
-        const std::uint32_t edge = edges_.edge(patch, side);
-        return edge == no_id ? along(segments_[patch], side) : needs_[edge].segments();
-      };
-      return {segments(Side::v0), segments(Side::u1), segments(Side::v1), segments(Side::u0)};
+  /// Returns the segments of a border.
+  Segments of(std::size_t patch, Side side) const {
+    const std::uint32_t edge = edges_.edge(patch, side);
+    return edge == no_id ? along(segments_[patch], side) : of_edge(edge, is_against(patch, side));
+  }
+  /// Writes the segments of a patch's four borders.
+  void put(std::size_t patch, std::array<Segments, 4>& borders) const {
+    if (!pieces_.empty()) {
+      for (const Side side : all_sides) borders[static_cast<std::size_t>(side)] = of(patch, side);
+      return;
     }
-    return {border(patch, Side::v0), border(patch, Side::u1), border(patch, Side::v1), border(patch, Side::u0)};
+    const PatchSegments own = segments_[patch];
+    const std::uint32_t* const edges = edges_.of_borders().data() + 4 * patch;
+    const EdgeNeeds* const needs = needs_.data();
+    const auto of_border = [needs](std::uint32_t edge, Segments along) {
+      return edge == no_id ? along : needs[edge].segments();
+    };
+    borders[0] = of_border(edges[0], own.u), borders[1] = of_border(edges[1], own.v);
+    borders[2] = of_border(edges[2], own.u), borders[3] = of_border(edges[3], own.v);
   }
 
  private:
   bool is_uniform(std::uint32_t edge) const { return pieces_.empty() || pieces_[edge].is_uniform(); }
-  bool is_against(std::size_t patch, Side side) const { return against_[4 * patch + static_cast<std::size_t>(side)]; }
-  Segments border(std::size_t patch, Side side) const {
-    const std::uint32_t edge = edges_.edge(patch, side);
-    if (edge == no_id) return along(segments_[patch], side);
-    return of_edge(edge, is_against(patch, side));
+  bool is_against(std::size_t patch, Side side) const {
+    return !against_.empty() && against_[4 * patch + static_cast<std::size_t>(side)];
   }
   Segments of_edge(std::uint32_t edge, bool against) const {
-    return pieces_.empty() ? needs_[edge].segments() : pieces_[edge].segments(against, needs_[edge].is_even);
+    return pieces_.empty() ? needs_[edge].segments() : pieces_[edge].segments(against, needs_[edge].is_even());
   }
 
   std::span<const PatchSegments> segments_;
   const SharedEdges& edges_;
-  std::vector<std::uint8_t> has_needs_;  ///< `[patch]`
-  std::vector<EdgeNeeds> needs_;         ///< `[edge]`
-  std::vector<PieceNeeds> pieces_;       ///< `[edge]`; empty if all segments are uniform
-  std::vector<std::uint8_t> against_;    ///< `[border]`; empty if all segments are uniform
+  std::vector<EdgeNeeds> needs_;       ///< `[edge]`
+  std::vector<PieceNeeds> pieces_;     ///< `[edge]`; empty if all segments are uniform
+  std::vector<std::uint8_t> against_;  ///< `[border]`; empty if all segments are uniform
   std::span<const std::vector<std::uint32_t>> groups_;
 };
 
@@ -156,15 +166,17 @@ bool is_welded_spot(const PatchNeeds& needs, std::size_t patch, const DividedPat
          is_needle(needs.set().patches[patch], Side::v0, needs.options().weld.reach);
 }
 
-/// Gives triangles to patches without any, unless those of a neighbour show what is left of them.
-void keep_from_vanishing(const PlanFacts& facts, DividedPatches& patches) {
+/// Gives triangles to patches without any, unless those of a neighbour show what is left of them. `has_poles`: whether
+/// any patch has a border that is a point.
+void keep_from_vanishing(const PlanFacts& facts, bool has_poles, DividedPatches& patches) {
   const SharedEdges& edges = facts.borders.edges();
   std::vector<Division>& divisions = patches.divisions;
+  if (!patches.rare->lines.empty()) patches.rare.make().lines.clear();
+  if (!has_poles) return;
   std::vector<std::uint32_t> without;  // patches of an area without triangles
   for (std::uint32_t k = 0; k < divisions.size(); ++k)
     if (const Division& of = divisions[k]; of.collapsed.any() && !of.empty && of.triangle_count() == 0)
       without.push_back(k);
-  if (!patches.rare->lines.empty()) patches.rare.make().lines.clear();
   if (without.empty()) return;
   std::vector<std::uint32_t> holders(edges.count(), no_id);  // `[edge]`: a patch with triangles
   for (std::uint32_t k = 0; k < divisions.size(); ++k)
@@ -197,22 +209,21 @@ BorderSegments choose_borders(const PlanFacts& facts, double tolerance, DividedP
                             *const cuts = set.trims ? set.trims->is_cut.data() : nullptr;
   const auto always_crosses = [crosses](std::size_t k) { return crosses && crosses[k]; };
   BorderSegments borders(segments, facts.borders.edges());
-  bool are_uniform = true;
+  std::uint64_t keys = 0;
+  const auto is_cut = [cuts](std::size_t k) { return cuts && cuts[k]; };
+  const auto has_needs = [&](std::size_t k) { return !shapes[k].is_curve || is_cut(k); };
   for (std::size_t k = 0; k < segments.size(); ++k) {
-    const bool is_cut = cuts && cuts[k];
-    if (!shapes[k].is_curve || is_cut)
-      borders.add(k, static_cast<std::uint16_t>(!is_cut && !is_coarse(k) && !always_crosses(k)));
-    are_uniform &= segments[k].are_uniform();
+    if (has_needs(k)) borders.add(k, std::uint32_t{!is_cut(k) && !is_coarse(k) && !always_crosses(k)});
+    keys |= segments[k].u.key() | segments[k].v.key();
   }
-  if (!are_uniform) borders.part(facts.borders.against(facts.needs));
+  if (!Segments::are_uniform(keys)) borders.part(facts.borders.against(facts.needs), has_needs);
   borders.share(facts.borders.in_step());
   const auto for_odd_borders = [&](const auto& visit) {
     for (std::size_t k = 0; k < segments.size(); ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_crosses(k)) continue;
       for (const Side side : all_sides) {
         if (!borders.is_even_edge(k, side)) continue;
-        if (!borders.of(k)[static_cast<std::size_t>(side)].parts_halves())
-          visit(k, side, crossing_distance(facts.needs, segments[k], k, side));
+        if (!borders.of(k, side).parts_halves()) visit(k, side, crossing_distance(facts.needs, segments[k], k, side));
       }
     }
   };
@@ -223,11 +234,17 @@ BorderSegments choose_borders(const PlanFacts& facts, double tolerance, DividedP
 
 void divide(const PlanFacts& facts, const BorderSegments& borders, DividedPatches& patches) {
   const std::span<const PatchShape> shapes = facts.borders.shapes(facts.needs);
-  patches.divisions.reserve(patches.segments.size());
-  for (std::size_t k = 0; k < patches.segments.size(); ++k)
-    patches.divisions.emplace_back().set(shapes[k], patches.segments[k], borders.of(k));
+  const std::span<const PatchSegments> segments = patches.segments;
+  patches.divisions.resize(segments.size());
+  const std::span<Division> divisions = patches.divisions;
+  bool has_poles = false;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    borders.put(k, divisions[k].border);
+    divisions[k].set(shapes[k], segments[k]);
+    has_poles |= shapes[k].collapsed.any();
+  }
   patches.open_edges = borders.open_edges();
-  keep_from_vanishing(facts, patches);
+  keep_from_vanishing(facts, has_poles, patches);
 }
 
 /// Returns rates up to `most` that keep a distance wherever triangles lie, also across the middle; empty if there are

@@ -56,26 +56,44 @@ class RatesByDistance {
   void choose_block(std::size_t block) {
     const std::uint32_t* patches = needs_.set().lane_patches.data() + block * PatchSet::lanes;
     const std::size_t count = needs_.set().lane_counts[block];
-    ChordBlocks::Lanes<double> left;
+    ChordBlocks::Lanes<double> left, given;
     left.fill(request_.tolerance);
-    for (std::size_t lane = 0; lane < count; ++lane) left[lane] = left_of(patches[lane]);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      given[lane] = needs_.given(patches[lane]);
+      left[lane] = needs_.tolerance_of(patches[lane], request_.tolerance) - given[lane];
+    }
     ChordBlocks::Lanes<double> aimed = left;
     for (double& of : aimed) of *= 1 - request_.headroom;
     ChordBlocks::Products products;
     const ChordBlocks::Choice choice = needs_.chords().cheapest(needs_.set(), block, count, aimed, max_rate, products);
+    const bool takes_best = choices_.empty() && request_.kept.segments.empty();
+    PatchSegments* const segments = patches_.segments.data();
+    float* const bounds = patches_.bounds.data();
     for (std::size_t lane = 0; lane < count; ++lane) {
       const std::size_t k = patches[lane];
-      ProvenSegments proven{choice.rates[lane], choice.distance[lane]};
-      beyond_[k] = !(left[lane] > 0) || choice.rates[lane].u == 0;
-      if (beyond_[k]) {
-        proven.segments = segments_beyond(needs_, k, request_).segments;
-        proven.distance = needs_.chord(k).distance_of(proven.segments);
+      const bool is_beyond = !(left[lane] > 0) || choice.rates[lane].u == 0;
+      if (is_beyond || !takes_best) {
+        const bool is_sharp = choice.sharpened >> lane & 1u;
+        take(k, {choice.rates[lane], choice.distance[lane]}, is_beyond, left[lane], is_sharp ? &products : nullptr);
+      } else {
+        segments[k] = choice.rates[lane];
+        bounds[k] = rounded_up(choice.distance[lane] + given[lane]);
       }
-      if (!choices_.empty())
-        choices_[k] = SegmentChoices(proven);
-      else
-        set(k, proven, left[lane], choice.sharpened >> lane & 1u ? &products : nullptr);
     }
+  }
+
+  /// Takes what was found for a patch: as a choice, or to be set.
+  void take(std::size_t patch, ProvenSegments proven, bool is_beyond, double left,
+            const ChordBlocks::Products* products) {
+    if (is_beyond) {
+      beyond_[patch] = 1;
+      proven.segments = segments_beyond(needs_, patch, request_).segments;
+      proven.distance = needs_.chord(patch).distance_of(proven.segments);
+    }
+    if (!choices_.empty())
+      choices_[patch] = SegmentChoices(proven);
+    else
+      set(patch, proven, left, products);
   }
 
   /// Sets the segments of a patch, or those that it keeps. `products`: see keep_by_distance().
@@ -117,8 +135,8 @@ Status choose_one_by_one(const PatchNeeds& needs, const PlanRequest& request, Di
 /// their bounds. One that none keeps is a mistake. Errors: invalid_argument.
 Status keep_beyond(const PlanFacts& facts, const PlanRequest& request, std::span<const std::uint8_t> is_beyond,
                    DividedPatches& patches) {
-  for (std::uint32_t patch = 0; patch < is_beyond.size(); ++patch)
-    if (is_beyond[patch]) patches.rare.make().beyond.push_back(patch);
+  for (auto at = std::ranges::find(is_beyond, 1); at != is_beyond.end(); at = std::find(at + 1, is_beyond.end(), 1))
+    patches.rare.make().beyond.push_back(static_cast<std::uint32_t>(at - is_beyond.begin()));
   const std::vector<std::uint32_t>& beyond = patches.rare->beyond;
   return beyond.empty() || beyond.size() < is_beyond.size() ? Status() : refusal(facts, request, beyond.front());
 }

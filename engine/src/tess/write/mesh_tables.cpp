@@ -248,6 +248,7 @@ class TableMaker {
   void add(const BlockGroup& group, const Division& division) {
     if (division.empty) return;
     const bool by_points = with_points_ && MeshTables::takes_points(group, division);
+    if (has_seen(group, division, by_points)) return;
     for (const Side side : all_sides) {
       const MeshTables::Border wanted{.degree = degree_along(side, group),
                                       .by_points = by_points,
@@ -275,11 +276,31 @@ class TableMaker {
   }
 
  private:
+  /// The key of a common border without its segments.
+  static std::uint32_t key_of(bool by_points, int degree, Segments inner) {
+    return static_cast<std::uint32_t>(by_points) << 30 | static_cast<std::uint32_t>(degree << 26 | inner.rate() << 13);
+  }
+  std::size_t place_of(std::uint32_t key) const { return (key * 0x9e3779b1u >> 20) & (seen_.size() - 1); }
+  /// Whether all borders of a patch are common ones that the cache has.
+  bool has_seen(const BlockGroup& group, const Division& division, bool by_points) const {
+    std::uint64_t keys = division.inner.u.key() | division.inner.v.key();
+    for (const Segments border : division.border) keys |= border.key();
+    if (!Segments::are_uniform(keys) || division.collapsed.any()) return false;
+    const std::uint32_t u = key_of(by_points, group.degree_u, division.inner.u),
+                        v = key_of(by_points, group.degree_v, division.inner.v);
+    const std::uint32_t* const seen = seen_.data();
+    const auto has = [&](std::uint32_t of_inner, Segments border) {
+      const std::uint32_t key = of_inner | static_cast<std::uint32_t>(border.key());
+      return seen[place_of(key)] == key;
+    };
+    return has(u, division.border[0]) && has(v, division.border[1]) && has(u, division.border[2]) &&
+           has(v, division.border[3]);
+  }
+
   void add_common(const MeshTables::Border& wanted) {
-    const std::uint32_t key = static_cast<std::uint32_t>(wanted.by_points) << 30 |
-                              static_cast<std::uint32_t>(wanted.degree << 26 | wanted.inner.rate() << 13) |
-                              static_cast<std::uint32_t>(wanted.border.rate());
-    std::uint32_t& seen = seen_[(key * 0x9e3779b1u >> 20) & (seen_.size() - 1)];
+    const std::uint32_t key =
+        key_of(wanted.by_points, wanted.degree, wanted.inner) | static_cast<std::uint32_t>(wanted.border.rate());
+    std::uint32_t& seen = seen_[place_of(key)];
     if (seen == key) return;
     add(wanted);
     seen = key;
