@@ -56,7 +56,7 @@ class BorderTable {
     std::uint32_t hash = 0, border = 0;  ///< border: its number + 1; 0: none
   };
 
-  void grow() {
+  [[gnu::noinline]] void grow() {
     const std::vector<Entry> entries(std::exchange(entries_, std::vector<Entry>(2 * entries_.size())));
     mask_ = entries_.size() - 1;
     for (const Entry& entry : entries) {
@@ -112,10 +112,7 @@ class EdgeFinder {
 
   /// Gives a border the edge of one with the same hash that is the same, or a new one.
   [[gnu::noinline]] void find(std::size_t number, Side side, std::uint32_t hash) {
-    const auto is_same = [&](std::size_t other) {
-      const PackedBorder border(set_, number / 4, side), found(set_, other / 4, all_sides[other % 4]);
-      return is_equal(border, found, false) || is_equal(border, found, true);
-    };
+    const auto is_same = [&](std::size_t other) { return this->is_same(number, other); };
     const std::size_t first = table_.find_or_add(hash, static_cast<std::uint32_t>(number), is_same);
     if (first == number) {
       edges_[number] = static_cast<std::uint32_t>(only_borders_.size());
@@ -124,6 +121,10 @@ class EdgeFinder {
       join(number, first);
     }
     if (first < number) back_[static_cast<std::size_t>(side)] = number - first;
+  }
+  [[gnu::noinline]] bool is_same(std::size_t number, std::size_t other) const {
+    const PackedBorder border(set_, number / 4, all_sides[number % 4]), found(set_, other / 4, all_sides[other % 4]);
+    return is_equal(border, found, false) || is_equal(border, found, true);
   }
   /// Gives a border the edge of another.
   void join(std::size_t number, std::size_t other) {
