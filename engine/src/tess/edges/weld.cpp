@@ -45,14 +45,22 @@ class Welder {
     // Where only edges with a single border are joined, most sets need no more than the list of these.
     const bool are_listed = rules_.is_relative && rules_.f64_patches.empty() && !edges_.only_borders().empty() &&
                             std::ranges::none_of(shapes_, &PatchShape::is_curve);
-    if (!are_listed) find_leading();
+    if (are_listed) {
+      leading_.assign(edges_.only_borders().begin(), edges_.only_borders().end());
+      has_more_.assign(edges_.count(), 0);
+    } else {
+      find_leading();
+    }
     const bool joins = rules_.reach > 0 && join_edges();
     const std::vector<std::uint32_t> points = rules_.reach > 0 ? find_points() : std::vector<std::uint32_t>();
     if (!joins && points.empty() && rules_.f64_patches.empty()) return {};
     if (are_listed) find_leading();
     if (joins) choose_givers();
     make_poles(points);
-    find_shapes();
+    weld_.shapes.assign(shapes_.begin(), shapes_.end());
+    for_borders([&](std::uint32_t border, std::uint32_t edge) {
+      if (is_pole_[canonical(edge)]) weld_.shapes[patch_of(border)].collapsed.add(side_of(border));
+    });
     UnionFind corners(4 * set_.patches.size());
     join_corners(corners);
     list_copies(corners);
@@ -78,12 +86,6 @@ class Welder {
     for_borders([&](std::uint32_t border, std::uint32_t edge) {
       if (is_f64(border) && leads(border, leading_[edge])) leading_[edge] = border;
     });
-  }
-  /// Whether an edge with a leading border has others.
-  bool has_more(std::uint32_t edge) const { return !has_more_.empty() && has_more_[edge]; }
-  /// The leading border of an edge that may be joined.
-  std::uint32_t leading(std::uint32_t edge) const {
-    return leading_.empty() ? edges_.only_borders()[edge] : leading_[edge];
   }
 
   SideCurve curve(std::uint32_t border) const { return curve_of(set_, border); }
@@ -115,7 +117,7 @@ class Welder {
 
   /// Returns how far apart an edge and another that is joined to it may be.
   double reach(std::uint32_t edge) const {
-    return rules_.is_relative ? std::min(rules_.reach, curve(leading(edge)).box().diagonal() / 8) : rules_.reach;
+    return rules_.is_relative ? std::min(rules_.reach, curve(leading_[edge]).box().diagonal() / 8) : rules_.reach;
   }
   /// Whether an edge is the opposite border of a border's patch, and none of the rows between them lies farther away
   /// than the reach.
@@ -127,7 +129,7 @@ class Welder {
 
   /// Compares an edge with another, and keeps the other if it is nearer than those before.
   void compare(std::uint32_t other, Nearest& nearest) const {
-    const std::uint32_t a = leading(nearest.edge), b = leading(other);
+    const std::uint32_t a = leading_[nearest.edge], b = leading_[other];
     const SideCurve border = curve(a), met = curve(b);
     const double reach = std::min(this->reach(nearest.edge), this->reach(other));
     for (const bool turned : {false, true}) {
@@ -136,7 +138,7 @@ class Welder {
       const double distance = distance_bound(border, met, turned);
       if (!(distance <= reach)) continue;
       const bool is_nearer = nearest.other == no_id || distance < nearest.distance ||
-                             (distance == nearest.distance && comes_before(met, curve(leading(nearest.other))));
+                             (distance == nearest.distance && comes_before(met, curve(leading_[nearest.other])));
       if (is_nearer && !is_thin(a, other)) nearest = {nearest.edge, other, turned, distance};
     }
   }
@@ -145,9 +147,9 @@ class Welder {
   std::vector<EdgePlace> places() const {
     std::vector<EdgePlace> places;
     places.reserve(64);
-    for (std::uint32_t edge = 0; edge < edges_.count(); ++edge) {
-      const std::uint32_t border = leading(edge);
-      if (border == no_id || (rules_.is_relative && has_more(edge))) continue;
+    for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
+      const std::uint32_t border = leading_[edge];
+      if (border == no_id || (rules_.is_relative && has_more_[edge])) continue;
       if (!rules_.stay.empty() && rules_.stay[border]) continue;
       const auto [first, last] = ends_of(border);
       const BezierPatch& patch = set_.patches[patch_of(first)];
@@ -162,7 +164,7 @@ class Welder {
   Nearest nearest_to(std::span<const EdgePlace> places, std::size_t k) const {
     const double reach = 1.001 * rules_.reach;  // compare() decides
     Nearest nearest{places[k].edge};
-    if (has_more(nearest.edge)) return nearest;
+    if (has_more_[nearest.edge]) return nearest;
     const auto look = [&](const EdgePlace& other) {
       if (!(std::abs(other.along - places[k].along) <= reach)) return false;
       if (max_abs(other.middle - places[k].middle) <= reach) compare(other.edge, nearest);
@@ -280,12 +282,6 @@ class Welder {
     }
     for (const std::uint32_t edge : kept) is_pole_[edge] = 0;
   }
-  void find_shapes() {
-    weld_.shapes.assign(shapes_.begin(), shapes_.end());
-    for_borders([&](std::uint32_t border, std::uint32_t edge) {
-      if (is_pole_[canonical(edge)]) weld_.shapes[patch_of(border)].collapsed.add(side_of(border));
-    });
-  }
 
   void join_corners(UnionFind& corners) {
     for (std::size_t patch = 0; patch < set_.patches.size(); ++patch)
@@ -329,7 +325,8 @@ class Welder {
       for (std::uint32_t side = 0; side < 4; ++side) {
         const std::uint32_t border = static_cast<std::uint32_t>(4 * patch) + side, edge = edge_of_border(border);
         const std::uint32_t corner = givers[border];
-        const bool moves = !(packed(corner) == packed(border)), takes = moves || (is_f64(corner) && corner != border);
+        const bool moves = !(packed_corner(set_, corner) == packed_corner(set_, border)),
+                   takes = moves || (is_f64(corner) && corner != border);
         if (takes) weld_.corners.push_back({border, corner});
         const bool was_point = edge == no_id;
         if (was_point || is_pole_[canonical(edge)]) {
@@ -342,7 +339,6 @@ class Welder {
       }
     }
   }
-  std::array<float, 3> packed(std::uint32_t corner) const { return packed_corner(set_, corner); }
 
   void renumber() {
     std::vector<std::uint32_t> numbers(leading_.size());
@@ -356,6 +352,7 @@ class Welder {
   WeldRules rules_;
   SharedEdges& edges_;
   /// `[edge]`: its leading border: if there are any of doubles, one of these, else the first of a patch with an area.
+  /// Until joins are found, none of edges with more borders where only single ones are joined.
   std::vector<std::uint32_t> leading_;
   std::vector<std::uint8_t> has_more_;  ///< `[edge]`: whether it has more than one border of patches with an area
   std::optional<UnionFind> joined_;     ///< sets of joined edges, if any are
