@@ -105,6 +105,9 @@ bool is_flat(const std::string& path) {
   return extension != ".glb" && extension != ".gltf";
 }
 
+/// Whether a format names the parts of a mesh.
+bool has_parts(const std::string& path) { return !is_flat(path) || lower_extension(path) == ".obj"; }
+
 /// The plan of the file, and what flatten() adds to the meshes' bounds.
 struct ShapesPlan {
   FilePlan file;
@@ -246,10 +249,12 @@ Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& 
   mesher.count(only, work);
   mesher.mesh(only, work);
   if (!work.status.ok()) return work.status;
-  Result<std::vector<MeshPart>> parts = parts_by_surface(work.mesh, *only.set, model);
-  if (!parts) return parts.status();
   made.mesh = std::move(work.mesh);
-  made.mesh.parts = *std::move(parts);
+  if (has_parts(path) || !model.instances.empty()) {  // a colour that no file can hold is an error in any
+    Result<std::vector<MeshPart>> parts = parts_by_surface(made.mesh, *only.set, model);
+    if (!parts) return parts.status();
+    made.mesh.parts = *std::move(parts);
+  }
   made.open_edges = only.count * work.open_edges;
   add_file(file, options, box, made);
   return {};
