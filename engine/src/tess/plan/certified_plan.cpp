@@ -1,46 +1,42 @@
 #include "tess/plan/certified_plan.h"
 
 #include <algorithm>
+#include <new>
+#include <numeric>
 
 #include "base/saturated.h"
+#include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
 
 void CertifiedPlan::lay_out() {
+  constexpr std::size_t patches_in_piece = 4096;
   const std::size_t patches = patches_.divisions.size();
-  for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->resize(patches + 1);
-  std::size_t vertices = 0, triangles = 0, quads = 0;
-  const auto add = [](std::size_t& sum, std::size_t count) { sum = saturated_sum(sum, count); };
-  const std::span<const CutPatch> cuts = this->cuts();
-  auto cut = cuts.begin();
-  std::size_t next_cut = cuts.empty() ? patches : cut->patch;
+  for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_}) first->assign(patches + 1, 0);
+  // The counts of a patch, where the next one begins.
   const bool shares = shares_vertices();
-  const std::span<const PatchEdit> edits =
-      closed() ? std::span<const PatchEdit>(closed()->edits) : std::span<const PatchEdit>();
-  auto edit = edits.begin();
-  for (std::size_t patch = 0; patch < patches; ++patch) {
-    const Division& division = patches_.divisions[patch];
-    first_vertex_[patch] = vertices;
-    first_triangle_[patch] = triangles;
-    first_quad_[patch] = quads;
-    if (!division.empty)
-      add(vertices, division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count()));
-    add(triangles, division.triangle_count());
-    add(quads, division.cell_count());
-    if (edit != edits.end() && edit->patch == patch) {
-      add(vertices, edit->vertices.size());
-      add(triangles, edit->added.size());
-      ++edit;
+  const auto count = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t patch = begin; patch < end; ++patch) {
+      const Division& division = patches_.divisions[patch];
+      if (!division.empty)
+        first_vertex_[patch + 1] = division.inner_count() + (shares ? owned_ring_count(patch) : division.ring_count());
+      first_triangle_[patch + 1] = division.triangle_count();
+      first_quad_[patch + 1] = division.cell_count();
     }
-    if (patch != next_cut) continue;
-    add(vertices, cut->vertices.size());
-    add(triangles, cut->triangles.size());
-    add(quads, cut->quad_count());
-    next_cut = ++cut == cuts.end() ? patches : cut->patch;
+  };
+  if (!parallel_for(patches, patches_in_piece, {}, count).ok()) throw std::bad_alloc();  // the only error
+  const auto add = [](std::size_t& sum, std::size_t more) { sum = saturated_sum(sum, more); };
+  for (const CutPatch& cut : cuts()) {
+    add(first_vertex_[cut.patch + 1], cut.vertices.size());
+    add(first_triangle_[cut.patch + 1], cut.triangles.size());
+    add(first_quad_[cut.patch + 1], cut.quad_count());
   }
-  first_vertex_[patches] = vertices;
-  first_triangle_[patches] = triangles;
-  first_quad_[patches] = quads;
+  for (const PatchEdit& edit : closed() ? std::span<const PatchEdit>(closed()->edits) : std::span<const PatchEdit>()) {
+    add(first_vertex_[edit.patch + 1], edit.vertices.size());
+    add(first_triangle_[edit.patch + 1], edit.added.size());
+  }
+  for (auto* first : {&first_vertex_, &first_triangle_, &first_quad_})
+    std::partial_sum(first->begin(), first->end(), first->begin(), saturated_sum);
 }
 
 bool CertifiedPlan::has_triangles_of(const CertifiedPlan& other) const {
