@@ -14,7 +14,7 @@ namespace tessera { inline namespace abi_0_1 {
 /// The content of a file, in memory that is not set to zero before it is read: of a long file by several threads.
 using FileBytes = UnsetVector<char>;
 inline std::string_view view_of(const FileBytes& bytes) { return {bytes.data(), bytes.size()}; }
-/// Reads a file as read_file() of io.h does, which a long string takes a fifth longer.
+/// Reads a file. Errors: as read_file() of io.h.
 Result<FileBytes> read_file_bytes(const std::filesystem::path& path);
 
 /// The error "path: what: the system's words for error_number".
