@@ -17,6 +17,7 @@ constexpr std::array<std::string_view, 43> internal_export{
     "tessera::arena_threads",
     "tessera::in_own_arena",
     "tessera::parallel_for",
+    "tessera::fetch_room",
     "tessera::resize_lists",
     "tessera::without_other_tasks",
     "tessera::ray_kernels",

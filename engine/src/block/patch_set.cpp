@@ -173,7 +173,8 @@ const BlockGroup& PatchSet::Impl::group_of_block(std::size_t block) const {
 PatchSet::Impl::~Impl() { PatchPieces::release(patches); }
 
 Box3 PatchSet::Impl::box() const {
-  Box3 box;
+  if (const Result<Box3> found = box_of(patches)) return *found;
+  Box3 box;  // without memory for threads
   for (const BezierPatch& patch : patches) box.extend(patch.hull_box());
   return box;
 }

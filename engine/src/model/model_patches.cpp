@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "base/impl_access.h"
+#include "parallel/least_index.h"
+#include "parallel/long_lists.h"
 #include "parallel/parallel_for.h"
 #include "tessera/status.h"
 
@@ -120,6 +123,17 @@ void GatheredPatches::add_sources(std::size_t surface, const PatchGrid& grid) {
   surface_count = surface + 1;
 }
 
+void GatheredPatches::add_single(std::span<const ModelSurface> surfaces) {
+  surface_count = surfaces.size();
+  const ListSize sizes[] = {size_of(sources, surface_count), size_of(domains, surface_count)};
+  resize_lists(sizes);
+  patches.reserve(surface_count);
+  for (std::size_t k = 0; k < surface_count; ++k) {
+    patches.push_back(std::get<BezierPatch>(surfaces[k].surface));
+    sources[k].surface = static_cast<std::uint32_t>(k);
+  }
+}
+
 void GatheredPatches::reserve(std::span<const PatchGrid> grids) {
   std::size_t count = 0;
   for (const PatchGrid& grid : grids) count += grid.patches().size();
@@ -158,7 +172,8 @@ Result<PatchSet> GatheredPatches::packed(PatchSetOptions options) && {
   options.fit_error = fit_error;
   if (patches.empty() && surface_count > 0)
     return Status(StatusCode::invalid_argument, "trimming loops cut away every patch");
-  Result<PatchSet> set = PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, box, options);
+  const std::optional<Box3> known = box.empty() ? std::nullopt : std::optional(box);
+  Result<PatchSet> set = PatchSet::Impl::make(std::move(patches), std::move(sources), surface_count, known, options);
   if (set && domains.size() == set->surface_count()) impl_of(*set).domains = std::move(domains);
   if (!set || trims.cuts.empty()) return set;
   trims.is_cut.resize(set->patch_count());
@@ -242,12 +257,31 @@ Status ModelPatches::add(SurfaceLoops of) {
   return {};
 }
 
+bool ModelPatches::is_whole_patch(std::size_t surface) const {
+  const ModelSurface& of = model_.surfaces[surface];
+  return std::holds_alternative<BezierPatch>(of.surface) && of.trims->empty() && !named_face(surface).face &&
+         of.placement == Affine{};
+}
+
 bool ModelPatches::pass_whole_patch() {
-  const std::size_t k = ends_.size();
-  const ModelSurface& surface = model_.surfaces[k];
-  if (!surface.trims->empty() || named_face(k).face || surface.placement != Affine{}) return false;
-  if (!std::holds_alternative<BezierPatch>(surface.surface)) return false;
+  if (!is_whole_patch(ends_.size())) return false;
   ends_.push_back(all_.patches.size());
+  return true;
+}
+
+Result<bool> ModelPatches::add_if_single() {
+  constexpr std::size_t surfaces_per_task = 2048;
+  const std::size_t count = model_.surfaces.size();
+  const auto find_other = [this](std::size_t begin, std::size_t end) {
+    while (begin < end && is_whole_patch(begin)) ++begin;
+    return begin;
+  };
+  const Result<std::size_t> other = find_first(count, find_other, surfaces_per_task);
+  if (!other) return other.status();
+  if (*other < count) return false;
+  all_.add_single(model_.surfaces);
+  ends_.resize(count);
+  std::iota(ends_.begin(), ends_.end(), std::size_t{1});
   return true;
 }
 
@@ -256,6 +290,10 @@ Status ModelPatches::add_all(const FitOptions& fit) {
   constexpr std::size_t batch = 256, surfaces_per_task = 2;
   const Execution& execution = progress_.loops();
   const Execution quiet{.cancel = execution.cancel};
+  if (ends_.empty()) {
+    const Result<bool> added = add_if_single();
+    if (!added || *added) return added.status();
+  }
   std::vector<SurfaceLoops> some;
   for (std::size_t first = 0; first < model_.surfaces.size(); first += batch) {
     some.clear();

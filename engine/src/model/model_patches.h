@@ -64,12 +64,14 @@ struct GatheredPatches {
   std::vector<PatchSource> sources;
   std::vector<Domain> domains;  ///< `[surface]`
   std::size_t surface_count = 0;
-  Box3 box;
+  Box3 box;  ///< of their control points; empty: packed() finds it
   FitError fit_error;
   PatchTrims trims;
 
   void add(std::size_t surface, PatchGrid&& grid);
   void add(std::size_t surface, const PatchGrid& grid);
+  /// Adds patches that are surfaces of their own, and leaves the box to packed(). There must be none before.
+  void add_single(std::span<const ModelSurface> surfaces);
   /// Makes room for whole grids.
   void reserve(std::span<const PatchGrid> grids);
   /// Adds what a face keeps of its patches.
@@ -111,10 +113,14 @@ class ModelPatches {
     std::uint32_t first_edge = 0;
   };
 
+  /// Adds all surfaces if each is_whole_patch(), without grids. Returns whether it has.
+  Result<bool> add_if_single();
   /// Finds the loops of a surface whose grid is known.
   void find_loops(std::size_t surface, SurfaceLoops& of) const;
   /// Adds the next surface's patches.
   Status add(SurfaceLoops of);
+  /// Whether a surface is a patch, unplaced and uncut.
+  bool is_whole_patch(std::size_t surface) const;
   NamedFace named_face(std::size_t surface) const { return surface < faces_.size() ? faces_[surface] : NamedFace{}; }
   /// Notes the patches of a face whose loops name edges. `first`: its first patch.
   void add_edges(std::uint32_t first_edge, const Shared<std::vector<TrimLoop>>& loops, const FaceTrims& trims,

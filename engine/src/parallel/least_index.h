@@ -26,8 +26,7 @@ class LeastIndex {
 /// Returns the least k below `count` that find(begin, end) finds in the pieces of [0, count), or `count` if there is
 /// none. `find` returns `end` if it finds none. Errors: those of parallel_for().
 template <class Find>
-Result<std::size_t> find_first(std::size_t count, const Find& find) {
-  constexpr std::size_t piece = std::size_t{1} << 16;
+Result<std::size_t> find_first(std::size_t count, const Find& find, std::size_t piece = std::size_t{1} << 16) {
   LeastIndex least;
   const Status status = parallel_for(count, piece, {}, [&](std::size_t begin, std::size_t end) {
     if (const std::size_t k = find(begin, end); k != end) least.add(k);

@@ -28,6 +28,9 @@ ListSize size_of(List& list, std::size_t count, std::size_t spare = 0) {
   return {{reinterpret_cast<std::byte*>(list.data()), count * sizeof *list.data()}, resize};
 }
 
+/// Fetches the pages of memory that is about to be filled, by several threads if it is long.
+TESSERA_INTERNAL_EXPORT void fetch_room(std::span<std::byte> memory);
+
 /// Gives lists their sizes, by several threads if they are long. Throws std::bad_alloc.
 TESSERA_INTERNAL_EXPORT void resize_lists(std::span<const ListSize> lists);
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "batch/kept.h"
 #include "batch/workers.h"
 #include "console/console.h"
 #include "console/memory.h"
@@ -235,7 +236,9 @@ Status run_batch(const Plan& plan, const CommonOptions& options,
         key = key_of(plan.jobs[k], options);
         if (record.has(key) && is_there(plan.jobs[k])) return key.clear(), Status();
         Timings timings;
-        return work(plan.jobs[k], timings);
+        const Status own = work(plan.jobs[k], timings);
+        drop_kept();
+        return own;
       },
       [&](std::size_t k, const JobResult& result) { done(plan.jobs[k], result); });
   return status.ok() ? failure : status;

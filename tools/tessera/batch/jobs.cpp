@@ -7,6 +7,7 @@
 #include <map>
 
 #include "batch/batch.h"
+#include "batch/kept.h"
 #include "console/progress.h"
 #include "line/arguments.h"
 #include "tessera/io.h"
@@ -71,7 +72,16 @@ void check_outputs_differ(const std::vector<Job>& jobs, const OutputRule& rule) 
   }
 }
 
+/// Never destroyed, so that what it holds is not, either.
+std::vector<std::shared_ptr<void>>& kept_objects() {
+  static auto& objects = *new std::vector<std::shared_ptr<void>>;
+  return objects;
+}
+
 }  // namespace
+
+void keep(std::shared_ptr<void> object) { kept_objects().push_back(std::move(object)); }
+void drop_kept() { kept_objects().clear(); }
 
 Json error_json(const Job& job, const Status& status) {
   return {{"files", job.inputs},
@@ -126,6 +136,7 @@ Status run_jobs(const Plan& plan, const CommonOptions& options,
   const Stopwatch clock;
   for (std::size_t k = 0; k < plan.jobs.size(); ++k) {
     const Job& job = plan.jobs[k];
+    drop_kept();
     if (plan.jobs.size() > 1) {
       const auto done = static_cast<double>(k), rest = static_cast<double>(plan.jobs.size() - k);
       const std::string left = k == 0 ? "" : ", about " + duration_text(clock.seconds() * rest / done) + " left";

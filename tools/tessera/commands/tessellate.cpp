@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "batch/batch.h"
+#include "batch/kept.h"
 #include "commands/commands.h"
 #include "console/output.h"
 #include "line/arguments.h"
@@ -67,11 +68,12 @@ Status run_tessellate(const Job& job, const TessellateOptions& options, const Co
   Result<OutputFile> out = open_output(job.output);
   if (!out) return out.status();
   const std::string path = format_path(job.output, options.write.format);
-  Result<Loaded> loaded = load(job, options.load, allows_shapes(options.mesh) ? With::shapes : With::patches, timings);
+  const With with = allows_shapes(options.mesh) ? With::shapes : With::patches;
+  Result<Loaded>& loaded = kept(load(job, options.load, with, timings));
   if (!loaded) return loaded.status();
   Result<Packed> packed = pack_for_meshes(*loaded, options.pack, suits_shapes(options.mesh, *loaded), timings);
   if (!packed) return packed.status();
-  const Result<Meshed> made = mesh_sets(*std::move(packed), *loaded, options.mesh, path, timings);
+  const Result<Meshed>& made = kept(mesh_sets(*std::move(packed), *loaded, options.mesh, path, timings));
   if (!made) return made.status();
   warn_of_rounding(job.output, *made);
   warn_of_surfaces(*loaded, *made);

@@ -1,9 +1,11 @@
 #include "stages/load.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <iterator>
 #include <optional>
@@ -86,17 +88,20 @@ void drop_shapes(Model& model) {
   }
 }
 
-/// Reads one file and adds it to `loaded`.
-Status add_file(const std::string& file, const LoadOptions& options, With with, Timings& timings, Loaded& loaded) {
+/// Reads one file of a job and adds it to `loaded`.
+Status add_file(const Job& job, const std::string& file, const LoadOptions& options, With with, Timings& timings,
+                Loaded& loaded) {
   Result<Model> model = timings.measure("read", [&] { return read_any_model(file, options); });
   if (!model) return model.status();
   say_warnings(model->warnings);
   const bool has_shapes = !model->instances.empty();
   if (with == With::patches || (with == With::shapes && !has_shapes)) {
     const auto phase = timings.phase("convert");
-    Result<std::vector<PatchGrid>> grids = convert(*model, options.fit);
-    if (!grids) return in_file(file, grids.status());
-    std::move(grids->begin(), grids->end(), std::back_inserter(loaded.grids));
+    if (job.inputs.size() > 1 || !are_patches(*model)) {
+      Result<std::vector<PatchGrid>> grids = convert(*model, options.fit);
+      if (!grids) return in_file(file, grids.status());
+      std::move(grids->begin(), grids->end(), std::back_inserter(loaded.grids));
+    }
   }
   loaded.all_have_shapes &= has_shapes;
   loaded.files.push_back(file);
@@ -205,7 +210,7 @@ Result<Loaded> load(const Job& job, const LoadOptions& options, With with, Timin
   Loaded loaded;
   loaded.fit = options.fit;
   for (const std::string& file : job.inputs) {
-    const Status status = add_file(file, options, with, timings, loaded);
+    const Status status = add_file(job, file, options, with, timings, loaded);
     if (status.ok()) continue;
     if (job.inputs.size() == 1 || status.code() == StatusCode::cancelled || interrupted()) return status;
     complain(status.message());
@@ -224,9 +229,25 @@ void say_warnings(const std::vector<std::string>& warnings) {
   if (count > limit) warn("and " + std::to_string(count - limit) + " more warnings of this file");
 }
 
+bool are_patches(const Model& model) {
+  constexpr std::size_t surfaces_per_task = 4096;
+  std::atomic<bool> is_other = false;
+  using Range = tbb::blocked_range<std::size_t>;
+  tbb::parallel_for(Range(0, model.surfaces.size(), surfaces_per_task), [&](const Range& range) {
+    for (std::size_t k = range.begin(); k < range.end() && !is_other; ++k) {
+      const ModelSurface& surface = model.surfaces[k];
+      if (!std::holds_alternative<BezierPatch>(surface.surface) || !surface.trims->empty() ||
+          surface.placement != Affine{})
+        is_other = true;
+    }
+  });
+  return !is_other;
+}
+
 Status add_patches(Loaded& loaded, Timings& timings) {
   if (loaded.grids.size() == loaded.model.surfaces.size()) return {};
   const auto phase = timings.phase("convert");
+  if (are_patches(loaded.model)) return loaded.grids.clear(), Status();
   Result<std::vector<PatchGrid>> grids = convert(loaded.model, loaded.fit);
   if (!grids) return loaded.in_place(0, grids.status());
   loaded.grids = *std::move(grids);

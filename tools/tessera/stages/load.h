@@ -36,7 +36,7 @@ struct Loaded {
   Model model;
   std::vector<std::string> files;                      ///< the files that were read
   std::vector<std::size_t> first;                      ///< the first surface of each file
-  std::vector<PatchGrid> grids;                        ///< the patches of each surface, if requested
+  std::vector<PatchGrid> grids;                        ///< if requested, and unless are_patches() of a single file
   std::vector<std::pair<std::string, Status>> failed;  ///< the other files, and their errors, which are already printed
   bool all_have_shapes = true;                         ///< whether all surfaces are faces of the model's instances
   FitOptions fit;                                      ///< how its surfaces become patches
@@ -60,6 +60,9 @@ Result<Loaded> load(const Job& job, const LoadOptions& options, With with, Timin
 
 /// Prints a warning about each part of a file that is not read.
 void say_warnings(const std::vector<std::string>& warnings);
+
+/// Whether all surfaces are patches as they stand, without a placement or trims, and are packed without grids.
+bool are_patches(const Model& model);
 
 /// Converts the surfaces of a model that load() has left as they are. Errors name file and surface.
 Status add_patches(Loaded& loaded, Timings& timings);

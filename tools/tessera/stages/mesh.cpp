@@ -105,6 +105,9 @@ bool is_flat(const std::string& path) {
   return extension != ".glb" && extension != ".gltf";
 }
 
+/// Whether a format names the parts of a mesh.
+bool has_parts(const std::string& path) { return !is_flat(path) || lower_extension(path) == ".obj"; }
+
 /// The plan of the file, and what flatten() adds to the meshes' bounds.
 struct ShapesPlan {
   FilePlan file;
@@ -235,7 +238,7 @@ class SetMesher {
 };
 
 /// Meshes all surfaces as one set.
-Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
+Status mesh_as_one(Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
                    Meshed& made) {
   const PackedSet& only = packed.sets[0];
   const Box3 box = only.set->model_box();
@@ -246,10 +249,12 @@ Status mesh_as_one(const Packed& packed, const Model& model, const MeshOptions& 
   mesher.count(only, work);
   mesher.mesh(only, work);
   if (!work.status.ok()) return work.status;
-  Result<std::vector<MeshPart>> parts = parts_by_surface(work.mesh, *only.set, model);
-  if (!parts) return parts.status();
   made.mesh = std::move(work.mesh);
-  made.mesh.parts = *std::move(parts);
+  if (has_parts(path) || !model.instances.empty()) {  // a colour that no file can hold is an error in any
+    Result<std::vector<MeshPart>> parts = parts_by_surface(made.mesh, *only.set, model);
+    if (!parts) return parts.status();
+    made.mesh.parts = *std::move(parts);
+  }
   made.open_edges = only.count * work.open_edges;
   add_file(file, options, box, made);
   return {};
@@ -266,8 +271,8 @@ void add_parts(const Model& model, const PackedSet& packed, SetMesh& work) {
 }
 
 /// Meshes the shapes that have a set, several side by side; `works` has an element for each shape. After an error no
-/// further shape begins.
-void run_shapes(const Packed& packed, const Model& model, SetMesher& mesher, std::vector<SetMesh>& works) {
+/// further shape begins. Sets are dropped once they are meshed.
+void run_shapes(Packed& packed, const Model& model, SetMesher& mesher, std::vector<SetMesh>& works) {
   using tbb::filter_mode, tbb::make_filter;
   std::size_t next = 0;
   std::atomic<bool> has_failed = false;
@@ -288,6 +293,7 @@ void run_shapes(const Packed& packed, const Model& model, SetMesher& mesher, std
   const auto mesh = [&](std::size_t k) {
     mesher.mesh(packed.sets[k], works[k]);
     add_parts(model, packed.sets[k], works[k]);
+    packed.sets[k].set.reset();
     if (!works[k].status.ok()) has_failed = true;
   };
   const auto at_once = 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
@@ -298,7 +304,7 @@ void run_shapes(const Packed& packed, const Model& model, SetMesher& mesher, std
 }
 
 /// Meshes each shape once.
-Status mesh_shapes(const Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
+Status mesh_shapes(Packed& packed, const Model& model, const MeshOptions& options, const std::string& path,
                    Meshed& made) {
   Result<MeshAssembly> assembly = instances_of(model);
   if (!assembly) return assembly.status();

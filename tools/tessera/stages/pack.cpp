@@ -115,7 +115,9 @@ Result<PatchSet> pack(const Loaded& loaded, const PackOptions& options, Timings&
   const auto phase = timings.phase("pack");
   PatchSetOptions packing;
   packing.trims = !options.untrimmed;
-  return with_places(loaded, 0, make_patch_set(loaded.model, loaded.grids, packing));
+  return with_places(loaded, 0,
+                     loaded.grids.empty() ? make_patch_set(loaded.model, packing, loaded.fit)
+                                          : make_patch_set(loaded.model, loaded.grids, packing));
 }
 
 Result<Packed> pack_for_meshes(Loaded& loaded, const PackOptions& options, bool by_shapes, Timings& timings) {

@@ -37,12 +37,13 @@ Status CadInput::unpack(std::string_view bytes) {
 
 Result<std::string_view> CadInput::bytes() {
   if (!given_.empty()) return given_;
-  if (owned_.empty()) {
-    Result<std::string> read = read_file(name_);
+  if (!owned_.empty()) return std::string_view(owned_);
+  if (read_.empty()) {
+    Result<FileBytes> read = read_file_bytes(name_);
     if (!read) return read.status();
-    owned_ = *std::move(read);
+    read_ = *std::move(read);
   }
-  return std::string_view(owned_);
+  return view_of(read_);
 }
 
 }}  // namespace tessera::abi_0_1

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/file/file.h"
 #include "io/file/memory_file.h"
 #include "tessera/status.h"
 
@@ -41,7 +42,8 @@ class CadInput {
 
   std::string name_;
   bool is_file_ = false;    ///< whether the file itself is the content
-  std::string owned_;       ///< what was read or unpacked
+  std::string owned_;       ///< what was unpacked
+  FileBytes read_;          ///< what was read where bytes() was called
   std::string_view given_;  ///< the caller's bytes, if these are the content
   std::uint64_t size_ = 0;
   MemoryFile copy_;

@@ -22,7 +22,8 @@ constexpr std::size_t piece_bytes = std::size_t{1} << 21;
 constexpr std::size_t pipe_limit = std::size_t{1} << 30;  // an endless device must not use all memory
 
 /// Fills `bytes` from its size `used` on to the end of the file, at most `limit` bytes in all. Returns 0 or an errno.
-int read_to_end(int descriptor, std::string& bytes, std::size_t used, std::size_t limit) {
+template <class Bytes>
+int read_to_end(int descriptor, Bytes& bytes, std::size_t used, std::size_t limit) {
   for (;;) {
     if (used == bytes.size()) {
       if (used >= limit) return EFBIG;
@@ -39,7 +40,8 @@ int read_to_end(int descriptor, std::string& bytes, std::size_t used, std::size_
 }
 
 /// Fills `bytes` with those of a long file that begin at 0, by several threads. Returns false if they cannot be read.
-bool read_pieces(int descriptor, std::string& bytes) {
+template <class Bytes>
+bool read_pieces(int descriptor, Bytes& bytes) {
   std::atomic<bool> has_failed = false;
   const Status status = parallel_for(bytes.size(), piece_bytes, {}, [&](std::size_t begin, std::size_t end) {
     while (begin < end && !has_failed) {
@@ -52,7 +54,8 @@ bool read_pieces(int descriptor, std::string& bytes) {
 }
 
 /// Does what read_file() says, but may throw.
-Result<std::string> read_whole(const std::filesystem::path& path) {
+template <class Bytes>
+Result<Bytes> read_whole(const std::filesystem::path& path) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open()) return io_failure(path, "cannot be opened", errno);
   struct stat facts {};
@@ -63,7 +66,7 @@ Result<std::string> read_whole(const std::filesystem::path& path) {
   if (regular && double(facts.st_size) > memory)
     return Status(StatusCode::out_of_memory, path.string() + ": has " + std::to_string(facts.st_size) +
                                                  " bytes, the memory of this machine " + text(memory));
-  std::string bytes;
+  Bytes bytes;
   // One byte more than the file has: the read that finds the end then needs no more memory.
   std::size_t used = 0;
   if (regular) {
@@ -84,7 +87,11 @@ Result<std::string> read_whole(const std::filesystem::path& path) {
 }  // namespace
 
 Result<std::string> read_file(const std::filesystem::path& path) {
-  return guarded([&] { return read_whole(path); });
+  return guarded([&] { return read_whole<std::string>(path); });
+}
+
+Result<FileBytes> read_file_bytes(const std::filesystem::path& path) {
+  return guarded([&] { return read_whole<FileBytes>(path); });
 }
 
 }}  // namespace tessera::abi_0_1

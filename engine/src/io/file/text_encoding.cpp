@@ -29,12 +29,12 @@ std::size_t utf8_length(std::string_view text, std::size_t k) {
 
 bool is_utf8(std::string_view text) {
   for (std::size_t k = 0; k < text.size();) {
-    // Most texts are ASCII: eight bytes at once.
-    std::uint64_t word = 0;
-    if (text.size() - k >= sizeof word) {
-      std::memcpy(&word, text.data() + k, sizeof word);
-      if ((word & 0x8080808080808080) == 0) {
-        k += sizeof word;
+    // Most texts are ASCII: 32 bytes at once.
+    std::array<std::uint64_t, 4> words;
+    if (text.size() - k >= sizeof words) {
+      std::memcpy(words.data(), text.data() + k, sizeof words);
+      if (((words[0] | words[1] | words[2] | words[3]) & 0x8080808080808080) == 0) {
+        k += sizeof words;
         continue;
       }
     }

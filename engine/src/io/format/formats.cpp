@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "io/cad/cad_reader.h"
+#include "io/file/file.h"
 #include "io/file/gzip.h"
 #include "io/format/output_formats.h"
 #include "io/mesh/mesh_formats.h"
@@ -73,12 +74,15 @@ Result<Content> read_as(const fs::path& path, const fs::path& as, Ability Format
   const Result<const Format*> format = find_format(path, lower_extension(without_gz(as)), member, what);
   std::error_code error;
   if (!format && fs::exists(path, error) && !fs::is_directory(path, error)) return format.status();
-  Result<std::string> bytes = read_file(path);
-  if (!bytes) return bytes.status();
+  Result<FileBytes> read = read_file_bytes(path);
+  if (!read) return read.status();
   if (!format) return format.status();
-  if (is_gzip(as, *bytes)) bytes = unpack_gzip(*bytes, path.string());
-  if (!bytes) return bytes.status();
-  return ((*format)->*member)(*bytes, path.string(), options...);
+  const std::string_view bytes = view_of(*read);
+  if (!is_gzip(as, bytes)) return ((*format)->*member)(bytes, path.string(), options...);
+  const Result<std::string> unpacked = unpack_gzip(bytes, path.string());
+  if (!unpacked) return unpacked.status();
+  *read = {};
+  return ((*format)->*member)(*unpacked, path.string(), options...);
 }
 
 /// The model in these bytes, unpacked if they are packed.

@@ -10,6 +10,7 @@
 #include "io/file/make_room.h"
 #include "io/spline/item_reader.h"
 #include "parallel/caller_arena.h"
+#include "parallel/long_lists.h"
 #include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -51,6 +52,7 @@ class ItemPieces {
       });
       if (!status.ok()) return status;
       has_fitted_ = false;
+      fetch_room_for(pieces);
       is_well = join(pieces);
     }
     if (!is_well || !ends_well()) return std::optional<std::vector<ModelSurface>>();
@@ -101,6 +103,14 @@ class ItemPieces {
       piece.end = size - cursor.remaining();
     }
     return piece;
+  }
+
+  /// Fetches the memory that the surfaces of pieces will take.
+  void fetch_room_for(std::span<const ItemPiece> pieces) {
+    std::size_t count = 0;
+    for (const ItemPiece& piece : pieces) count += piece.surfaces.size();
+    count = std::min(count, surfaces_.capacity() - surfaces_.size());
+    fetch_room({reinterpret_cast<std::byte*>(surfaces_.data() + surfaces_.size()), count * sizeof(ModelSurface)});
   }
 
   /// Puts pieces after what is joined. Returns whether all is well.

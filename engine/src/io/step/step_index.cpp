@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <ranges>
 #include <utility>
 
 #include "base/text.h"
@@ -85,8 +86,10 @@ class StepIndexMaker {
     const std::size_t next = next_piece_ < pieces_.size() ? pieces_[next_piece_].begin : at + piece_bytes;
     const std::size_t limit = std::min(next, text_.size());
     const StepRun run = fits ? std::move(pieces_[next_piece_++]) : scan_instances(text_, at, limit);
+    std::vector<std::uint32_t> kinds;  // by kind of the run; both are in the order in which kinds are met
+    for (const std::string_view name : run.kinds.names()) kinds.push_back(kinds_.index_of(name));
     for (StepInstance instance : run.instances) {
-      if (instance.kind != StepIndex::several_kinds) instance.kind = kinds_.index_of(run.kinds.names()[instance.kind]);
+      if (instance.kind != StepIndex::several_kinds) instance.kind = kinds[instance.kind];
       index_.instances_.push_back(instance);
     }
     return run.end == at ? odd_instance(at) : run.end;
@@ -215,9 +218,25 @@ void StepIndex::count_lines() {
   }
 }
 
+/// Sorts instances by counting, if their numbers differ and have few gaps. Returns whether they do.
+bool StepIndex::sort_by_places() {
+  constexpr std::uint32_t none = 0xffffffff;
+  const auto [least, most] = std::ranges::minmax(instances_ | std::views::transform(&StepInstance::number));
+  if (most - least >= 2 * instances_.size()) return false;
+  std::vector<std::uint32_t> places(static_cast<std::size_t>(most - least) + 1, none);
+  for (std::uint32_t k = 0; k < instances_.size(); ++k)
+    if (std::exchange(places[static_cast<std::size_t>(instances_[k].number - least)], k) != none) return false;
+  std::vector<StepInstance> sorted;
+  sorted.reserve(instances_.size());
+  for (const std::uint32_t k : places)
+    if (k != none) sorted.push_back(instances_[k]);
+  instances_ = std::move(sorted);
+  return true;
+}
+
 /// Sorts by numbers, and leaves out all but the first of each.
 void StepIndex::sort_instances() {
-  if (!std::ranges::is_sorted(instances_, {}, &StepInstance::number))
+  if (!std::ranges::is_sorted(instances_, {}, &StepInstance::number) && !sort_by_places())
     std::ranges::stable_sort(instances_, {}, &StepInstance::number);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < instances_.size(); ++k) {

@@ -69,6 +69,7 @@ class StepIndex {
  private:
   friend class StepIndexMaker;
   void count_lines();
+  bool sort_by_places();
   void sort_instances();
   void list_kinds();
   void remark(std::uint64_t place, std::string text);

@@ -9,22 +9,13 @@
 
 #include "base/union_find.h"
 #include "parallel/parallel_for.h"
+#include "tess/edges/edge_places.h"
 #include "tess/edges/numbered_borders.h"
 #include "tess/edges/side_curve.h"
 #include "tess/edges/thin_patches.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
-
-/// An edge, and where its middle lies along `unaligned`.
-struct EdgePlace {
-  EdgePlace(std::uint32_t of, const Vec3& at) : edge(of), middle(at), along(dot(unaligned, at)) {}
-  bool operator<(const EdgePlace& other) const { return along < other.along; }
-
-  std::uint32_t edge;
-  Vec3 middle;  ///< of the edge's ends, relative to the set's origin
-  double along;
-};
 
 /// Calls visit(k) for each k below `count`, on all threads.
 template <class Visit>
@@ -156,7 +147,7 @@ class Welder {
       places.emplace_back(edge,
                           0.5 * (corner_of(patch, first) - set_.origin) + 0.5 * (corner_of(patch, last) - set_.origin));
     }
-    std::sort(places.begin(), places.end());
+    sort_by_pieces(places);
     return places;
   }
 

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
+#include <new>
 #include <optional>
 #include <utility>
 
 #include "block/patch_trims.h"
+#include "parallel/long_lists.h"
+#include "parallel/parallel_for.h"
 #include "tess/bounds/rounded_up.h"
 #include "tess/edges/edge_needs.h"
 #include "tess/edges/thin_patches.h"
@@ -132,30 +136,49 @@ class BorderSegments {
   std::span<const std::vector<std::uint32_t>> groups_;
 };
 
-/// Makes the borders even that patches refuse, and returns the patches that accept odd ones, with their distances
-/// there. The borders are made even together: a refusal must not depend on an earlier one. Each raises rates, which
-/// lowers the distances of those that were accepted.
+constexpr std::size_t patches_in_piece = 2048;
+
+/// Calls work(begin, end) for pieces of the patches, on all threads.
+template <class Work>
+void for_pieces(std::size_t patches, const Work& work) {
+  if (!parallel_for(patches, patches_in_piece, {}, work).ok()) throw std::bad_alloc();  // the only error
+}
+
+/// The odd borders that some patches refuse, and the others' patches, with their distances there.
+struct OddBorders {
+  std::vector<std::pair<std::size_t, Side>> refused = {};
+  std::vector<std::pair<std::size_t, float>> accepted = {};
+};
+
+/// Makes the borders even that patches refuse, and returns the odd ones that are left, by pieces of the patches. The
+/// borders are made even together: a refusal must not depend on an earlier one. Each raises rates, which lowers the
+/// distances of those that were accepted.
 template <class ForOddBorders>
-std::vector<std::pair<std::size_t, float>> make_refused_even(BorderSegments& borders, const PatchNeeds& needs,
-                                                             double tolerance, const ForOddBorders& for_odd_borders) {
-  std::vector<std::pair<std::size_t, Side>> refused;
-  std::vector<std::pair<std::size_t, float>> accepted;
-  const auto judge = [&](std::size_t k, Side side, double distance) {
-    if (!(distance <= needs.tolerance_of(k, tolerance))) {
-      refused.emplace_back(k, side);
-    } else {
-      accepted.emplace_back(k, rounded_up(distance));
-    }
+std::vector<OddBorders> make_refused_even(BorderSegments& borders, const PlanFacts& facts, double tolerance,
+                                          std::size_t patches, const ForOddBorders& for_odd_borders) {
+  const auto judge = [&] {
+    std::vector<OddBorders> pieces((patches + patches_in_piece - 1) / patches_in_piece);
+    for_pieces(patches, [&](std::size_t begin, std::size_t end) {
+      OddBorders& piece = pieces[begin / patches_in_piece];
+      for_odd_borders(begin, end, [&](std::size_t k, Side side, double distance) {
+        if (!(distance <= facts.needs.tolerance_of(k, tolerance))) {
+          piece.refused.emplace_back(k, side);
+        } else {
+          piece.accepted.emplace_back(k, rounded_up(distance));
+        }
+      });
+    });
+    return pieces;
   };
-  for_odd_borders(judge);
-  if (refused.empty()) return accepted;
-  for (const auto& [k, side] : refused) borders.make_even(k, side);
+  std::vector<OddBorders> pieces = judge();
+  const auto refuses = [](const OddBorders& piece) { return !piece.refused.empty(); };
+  if (std::ranges::none_of(pieces, refuses)) return pieces;
+  for (const OddBorders& piece : pieces)
+    for (const auto& [k, side] : piece.refused) borders.make_even(k, side);
   borders.share();
-  refused.clear();
-  accepted.clear();
-  for_odd_borders(judge);
-  assert(refused.empty());
-  return accepted;
+  pieces = judge();
+  assert(std::ranges::none_of(pieces, refuses));
+  return pieces;
 }
 
 /// Whether welding made a patch a point, and a neighbour has triangles there.
@@ -218,8 +241,8 @@ BorderSegments choose_borders(const PlanFacts& facts, double tolerance, DividedP
   }
   if (!Segments::are_uniform(keys)) borders.part(facts.borders.against(facts.needs), has_needs);
   borders.share(facts.borders.in_step());
-  const auto for_odd_borders = [&](const auto& visit) {
-    for (std::size_t k = 0; k < segments.size(); ++k) {
+  const auto for_odd_borders = [&](std::size_t begin, std::size_t end, const auto& visit) {
+    for (std::size_t k = begin; k < end; ++k) {
       if (!is_coarse(k) || shapes[k].is_curve || always_crosses(k)) continue;
       for (const Side side : all_sides) {
         if (!borders.is_even_edge(k, side)) continue;
@@ -227,22 +250,27 @@ BorderSegments choose_borders(const PlanFacts& facts, double tolerance, DividedP
       }
     }
   };
-  for (const auto& [k, distance] : make_refused_even(borders, facts.needs, tolerance, for_odd_borders))
-    patches.bounds[k] = std::max(patches.bounds[k], distance);
+  for (const OddBorders& piece : make_refused_even(borders, facts, tolerance, segments.size(), for_odd_borders))
+    for (const auto& [k, distance] : piece.accepted) patches.bounds[k] = std::max(patches.bounds[k], distance);
   return borders;
 }
 
 void divide(const PlanFacts& facts, const BorderSegments& borders, DividedPatches& patches) {
   const std::span<const PatchShape> shapes = facts.borders.shapes(facts.needs);
   const std::span<const PatchSegments> segments = patches.segments;
-  patches.divisions.resize(segments.size());
+  const ListSize sizes[] = {size_of(patches.divisions, segments.size())};
+  resize_lists(sizes);
   const std::span<Division> divisions = patches.divisions;
-  bool has_poles = false;
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    borders.put(k, divisions[k].border);
-    divisions[k].set(shapes[k], segments[k]);
-    has_poles |= shapes[k].collapsed.any();
-  }
+  std::atomic<bool> has_poles = false;
+  for_pieces(segments.size(), [&](std::size_t begin, std::size_t end) {
+    bool finds_poles = false;
+    for (std::size_t k = begin; k < end; ++k) {
+      borders.put(k, divisions[k].border);
+      divisions[k].set(shapes[k], segments[k]);
+      finds_poles |= shapes[k].collapsed.any();
+    }
+    if (finds_poles) has_poles = true;
+  });
   patches.open_edges = borders.open_edges();
   keep_from_vanishing(facts, has_poles, patches);
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <new>
 #include <type_traits>
 #include <utility>
 
 #include "basis/bernstein.h"
 #include "kernel/table/kernel_table.h"
+#include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
@@ -233,35 +235,72 @@ void MeshTables::add_strip(Segments border, Segments inner, bool collapsed) {
   strip = {hold(whole), static_cast<int>(codes.size())};
 }
 
+/// Knows most of the common borders that came before, by their degrees, and inner and border rates.
+class SeenBorders {
+ public:
+  explicit SeenBorders(std::size_t patches) : keys_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {}
+
+  /// Calls visit(border) for the borders of a patch.
+  template <class Visit>
+  static void for_borders(const BlockGroup& group, const Division& division, bool with_points, const Visit& visit) {
+    if (division.empty) return;
+    const bool by_points = with_points && MeshTables::takes_points(group, division);
+    for (const Side side : all_sides)
+      visit(MeshTables::Border{.degree = degree_along(side, group),
+                               .by_points = by_points,
+                               .backward = is_backward(side),
+                               .collapsed = division.collapsed.has(side),
+                               .inner = division.inner_along(side),
+                               .border = division.border[static_cast<std::size_t>(side)]});
+  }
+
+  /// Whether all borders of a patch are known to have come before.
+  bool has(const BlockGroup& group, const Division& division, bool with_points) const {
+    std::uint64_t all = division.inner.u.key() | division.inner.v.key();
+    for (const Segments border : division.border) all |= border.key();
+    if (!Segments::are_uniform(all) || division.collapsed.any()) return false;
+    const bool by_points = with_points && MeshTables::takes_points(group, division);
+    const std::uint32_t u = key_of(by_points, group.degree_u, division.inner.u),
+                        v = key_of(by_points, group.degree_v, division.inner.v);
+    const std::uint32_t* const keys = keys_.data();
+    const auto has = [&](std::uint32_t of_inner, Segments border) {
+      const std::uint32_t key = of_inner | static_cast<std::uint32_t>(border.key());
+      return keys[place_of(key)] == key;
+    };
+    return has(u, division.border[0]) && has(v, division.border[1]) && has(u, division.border[2]) &&
+           has(v, division.border[3]);
+  }
+  /// Returns false for a border of a kind that is known to have come before.
+  bool add(const MeshTables::Border& border) {
+    if (!MeshTables::is_common(border.border, border.inner, border.collapsed)) return true;
+    const std::uint32_t key =
+        key_of(border.by_points, border.degree, border.inner) | static_cast<std::uint32_t>(border.border.rate());
+    return std::exchange(keys_[place_of(key)], key) != key;
+  }
+
+ private:
+  /// The key of a common border without its segments.
+  static std::uint32_t key_of(bool by_points, int degree, Segments inner) {
+    return static_cast<std::uint32_t>(by_points) << 30 | static_cast<std::uint32_t>(degree << 26 | inner.rate() << 13);
+  }
+  std::size_t place_of(std::uint32_t key) const { return (key * 0x9e3779b1u >> 20) & (keys_.size() - 1); }
+
+  std::vector<std::uint32_t> keys_;
+};
+
 /// Uses the common tables, or a copy of them to which it adds what they lack.
 class TableMaker {
  public:
-  TableMaker(SharedSlot<void>& kept, std::size_t patches, bool with_points)
-      : kept_(kept),
-        common_(std::static_pointer_cast<const MeshTables>(kept.load())),
-        with_points_(with_points),
-        seen_(std::bit_ceil(std::clamp<std::size_t>(16 * patches, 64, 4096))) {
+  explicit TableMaker(SharedSlot<void>& kept)
+      : kept_(kept), common_(std::static_pointer_cast<const MeshTables>(kept.load())) {
     if (!common_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables());
     common_bytes_ = common_->bytes();
   }
 
-  void add(const BlockGroup& group, const Division& division) {
-    if (division.empty) return;
-    const bool by_points = with_points_ && MeshTables::takes_points(group, division);
-    if (has_seen(group, division, by_points)) return;
-    for (const Side side : all_sides) {
-      const MeshTables::Border wanted{.degree = degree_along(side, group),
-                                      .by_points = by_points,
-                                      .backward = is_backward(side),
-                                      .collapsed = division.collapsed.has(side),
-                                      .inner = division.inner_along(side),
-                                      .border = division.border[static_cast<std::size_t>(side)]};
-      if (MeshTables::is_common(wanted.border, wanted.inner, wanted.collapsed)) {
-        add_common(wanted);
-      } else {
-        add(wanted);
-      }
-    }
+  [[gnu::cold]] void add(const MeshTables::Border& wanted) {
+    if (common_->has(wanted)) return;
+    if (!own_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(*common_));
+    own_->add(wanted);
   }
   /// Returns the tables. They become the common ones if they are small. If they are too large and the common ones are
   /// more than half full, the common ones begin anew.
@@ -276,53 +315,40 @@ class TableMaker {
   }
 
  private:
-  /// The key of a common border without its segments.
-  static std::uint32_t key_of(bool by_points, int degree, Segments inner) {
-    return static_cast<std::uint32_t>(by_points) << 30 | static_cast<std::uint32_t>(degree << 26 | inner.rate() << 13);
-  }
-  std::size_t place_of(std::uint32_t key) const { return (key * 0x9e3779b1u >> 20) & (seen_.size() - 1); }
-  /// Whether all borders of a patch are common ones that the cache has.
-  bool has_seen(const BlockGroup& group, const Division& division, bool by_points) const {
-    std::uint64_t keys = division.inner.u.key() | division.inner.v.key();
-    for (const Segments border : division.border) keys |= border.key();
-    if (!Segments::are_uniform(keys) || division.collapsed.any()) return false;
-    const std::uint32_t u = key_of(by_points, group.degree_u, division.inner.u),
-                        v = key_of(by_points, group.degree_v, division.inner.v);
-    const std::uint32_t* const seen = seen_.data();
-    const auto has = [&](std::uint32_t of_inner, Segments border) {
-      const std::uint32_t key = of_inner | static_cast<std::uint32_t>(border.key());
-      return seen[place_of(key)] == key;
-    };
-    return has(u, division.border[0]) && has(v, division.border[1]) && has(u, division.border[2]) &&
-           has(v, division.border[3]);
-  }
-
-  void add_common(const MeshTables::Border& wanted) {
-    const std::uint32_t key =
-        key_of(wanted.by_points, wanted.degree, wanted.inner) | static_cast<std::uint32_t>(wanted.border.rate());
-    std::uint32_t& seen = seen_[place_of(key)];
-    if (seen == key) return;
-    add(wanted);
-    seen = key;
-  }
-  [[gnu::cold]] void add(const MeshTables::Border& wanted) {
-    if (common_->has(wanted)) return;
-    if (!own_) common_ = own_ = std::shared_ptr<MeshTables>(new MeshTables(*common_));
-    own_->add(wanted);
-  }
-
   SharedSlot<void>& kept_;
   std::shared_ptr<const MeshTables> common_;
-  bool with_points_;
   std::size_t common_bytes_;
   std::shared_ptr<MeshTables> own_;  ///< a copy that replaces common_, if it lacked something
-  std::vector<std::uint32_t> seen_;  ///< a cache of what has been added: degrees, inner and border rates
 };
 
 std::shared_ptr<const MeshTables> MeshTables::of(const PatchSet::Impl& set, std::span<const Division> divisions,
                                                  bool with_points) {
-  TableMaker maker(set.plan_tables[with_points ? 1 : 0], divisions.size(), with_points);
-  for (std::size_t k = 0; k < divisions.size(); ++k) maker.add(set.group_of_block(set.slots[k].block), divisions[k]);
+  // Threads find the patches that may need further tables. They are few, and one thread adds what these lack, in order.
+  constexpr std::size_t patches_in_piece = 4096;
+  std::vector<std::vector<std::uint32_t>> found((divisions.size() + patches_in_piece - 1) / patches_in_piece);
+  const auto group_of = [&](std::size_t patch) -> const BlockGroup& {
+    return set.group_of_block(set.slots[patch].block);
+  };
+  const auto borders_of = [&](std::size_t patch, const auto& visit) {
+    SeenBorders::for_borders(group_of(patch), divisions[patch], with_points, visit);
+  };
+  const auto look = [&](std::size_t begin, std::size_t end) {
+    SeenBorders seen(end - begin);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (divisions[k].empty || seen.has(group_of(k), divisions[k], with_points)) continue;
+      bool is_new = false;
+      borders_of(k, [&](const Border& border) { is_new |= seen.add(border); });
+      if (is_new) found[begin / patches_in_piece].push_back(static_cast<std::uint32_t>(k));
+    }
+  };
+  if (!parallel_for(divisions.size(), patches_in_piece, {}, look).ok()) throw std::bad_alloc();
+  TableMaker maker(set.plan_tables[with_points ? 1 : 0]);
+  SeenBorders seen(divisions.size());
+  const auto add = [&](const Border& border) {
+    if (seen.add(border)) maker.add(border);
+  };
+  for (const std::vector<std::uint32_t>& patches : found)
+    for (const std::uint32_t k : patches) borders_of(k, add);
   return maker.take();
 }
 

@@ -58,6 +58,7 @@ class MeshTables {
 
  private:
   friend class TableMaker;
+  friend class SeenBorders;
   MeshTables() = default;
 
   /// The most by which a border has fewer segments than the inner points: a patch with one segment gets two of these.
