@@ -3,12 +3,11 @@
 //
 // Memory: results own theirs; arguments are not kept. Threads: any number of calls at once.
 
-#include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "tessera/bezier_patch.h"
+#include "tessera/detail/shared_memory.h"
 #include "tessera/geometry.h"
 #include "tessera/status.h"
 
@@ -52,27 +51,30 @@ class Curve {
   static Result<Curve> nurbs(int degree, std::span<const Vec3> points, std::span<const double> weights,
                              std::span<const double> knots, std::optional<Interval> domain = {});
 
-  int degree() const { return data_->degree; }                        ///< degree of every piece
-  bool is_rational() const { return !data_->weights.empty(); }        ///< whether it has weights that differ
-  std::span<const Vec3> points() const { return data_->points; }      ///< not premultiplied
-  std::span<const double> weights() const { return data_->weights; }  ///< empty for a polynomial curve
+  int degree() const { return data().degree; }                        ///< degree of every piece
+  bool is_rational() const { return !data().weights.empty(); }        ///< whether it has weights that differ
+  std::span<const Vec3> points() const { return data().points; }      ///< not premultiplied
+  std::span<const double> weights() const { return data().weights; }  ///< empty for a polynomial curve
   /// Returns the weight of point i; 1 in a polynomial curve.
-  double weight(std::size_t i) const { return is_rational() ? data_->weights[i] : 1.0; }
-  std::span<const double> knots() const { return data_->knots; }  ///< points().size() + degree() + 1
-  const Interval& domain() const { return data_->domain; }        ///< interval on which it is evaluated
+  double weight(std::size_t i) const { return is_rational() ? data().weights[i] : 1.0; }
+  std::span<const double> knots() const { return data().knots; }  ///< points().size() + degree() + 1
+  const Interval& domain() const { return data().domain; }        ///< interval on which it is evaluated
   /// Compares degree, points, weights, knots and domain, by the == of numbers.
   bool operator==(const Curve& other) const;
 
  private:
+  /// The head of a curve's memory. All that the lists hold lies behind it.
   struct Data {
     int degree;
-    std::vector<Vec3> points;
-    std::vector<double> weights, knots;
+    std::span<const Vec3> points;
+    std::span<const double> weights, knots;
     Interval domain;
-    friend bool operator==(const Data&, const Data&) = default;
   };
-  explicit Curve(Data data);
-  std::shared_ptr<const Data> data_;
+  Curve(int degree, std::span<const Vec3> points, std::span<const double> weights, std::span<const double> knots,
+        const Interval& domain);
+  const Data& data() const { return *static_cast<const Data*>(memory_.data()); }
+
+  SharedMemory memory_;
 };
 
 /// Position, first and second derivative by the curve's own parameter.

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "tessera/curve.h"
 #include "tessera/geometry.h"
 
 namespace tessera { inline namespace abi_0_1 {

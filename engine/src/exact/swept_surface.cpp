@@ -17,21 +17,26 @@ Result<FaceSurface> revolved(const Frame& frame, const Interval& angles, const S
   const Arcs turn(angles.from, angles.to);
   std::vector<Vec3> points;
   std::vector<double> weights;
-  for (const Arcs::Point& arc : turn.points())
+  const std::vector<Arcs::Point> arcs = turn.points();
+  points.reserve(arcs.size() * profile.points.size());
+  weights.reserve(arcs.size() * profile.points.size());
+  for (const Arcs::Point& arc : arcs)
     for (std::size_t k = 0; k < profile.points.size(); ++k) {
       const Vec3& p = profile.points[k];
       points.push_back(frame.at({arc.cosine * p.x - arc.sine * p.y, arc.sine * p.x + arc.cosine * p.y, p.z}));
       weights.push_back(arc.weight * profile.weight(k));
     }
   const Domain domain{angles.from, angles.to, profile.range.from, profile.range.to};
-  return with_parameters(
-      BSplineSurface::rational(2, turn.knots(), profile.degree, profile.knots, points, weights, domain),
-      {turn, profile.arcs}, profile.fit_error);
+  return with_parameters(BSplineSurface::rational(2, turn.knots(), profile.degree, profile.knots, std::move(points),
+                                                  std::move(weights), domain),
+                         {turn, profile.arcs}, profile.fit_error);
 }
 
 Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, const Interval& range) {
   std::vector<Vec3> points;
   std::vector<double> weights;
+  points.reserve(2 * profile.points.size());
+  weights.reserve(2 * profile.points.size());
   for (std::size_t k = 0; k < profile.points.size(); ++k)
     for (const double v : {range.from, range.to}) {
       points.push_back(profile.points[k] + v * direction);
@@ -39,7 +44,8 @@ Result<FaceSurface> extruded(const SplineLine& profile, const Vec3& direction, c
     }
   const std::vector<double> knots_v{range.from, range.from, range.to, range.to};
   const Domain domain{profile.range.from, profile.range.to, range.from, range.to};
-  return with_parameters(BSplineSurface::rational(profile.degree, profile.knots, 1, knots_v, points, weights, domain),
+  return with_parameters(BSplineSurface::rational(profile.degree, profile.knots, 1, knots_v, std::move(points),
+                                                  std::move(weights), domain),
                          {profile.arcs, {}}, profile.fit_error);
 }
 

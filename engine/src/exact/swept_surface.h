@@ -6,6 +6,7 @@
 
 #include "exact/arcs.h"
 #include "exact/spline_line.h"
+#include "exact/thinned_spline.h"
 #include "tessera/geometry.h"
 #include "tessera/nurbs_surface.h"
 #include "tessera/status.h"
@@ -25,7 +26,8 @@ struct Reparametrization {
 struct FaceSurface {
   BSplineSurface surface;
   Reparametrization parameters;
-  double fit_error = 0;  ///< 0: exact
+  double fit_error = 0;    ///< 0: exact
+  SplineShift shift = {};  ///< what thin() has done
 };
 
 /// Orthogonal axes of unit length, left- or right-handed.

@@ -8,14 +8,18 @@ namespace {
 Result<BSplineSurface> transposed(const BSplineSurface& s) {
   std::vector<Vec3> points;
   std::vector<double> weights;
+  points.reserve(s.points().size());
+  weights.reserve(s.weights().size());
   for (std::size_t j = 0; j < s.count_v(); ++j)
     for (std::size_t i = 0; i < s.count_u(); ++i) {
       points.push_back(s.point(i, j));
-      weights.push_back(s.weight(i, j));
+      if (s.is_rational()) weights.push_back(s.weight(i, j));
     }
-  const Domain& d = s.domain();
-  return BSplineSurface::rational(s.degree_v(), s.knots_v(), s.degree_u(), s.knots_u(), points, weights,
-                                  Domain{d.v0, d.v1, d.u0, d.u1});
+  const Domain turned{s.domain().v0, s.domain().v1, s.domain().u0, s.domain().u1};
+  return s.is_rational() ? BSplineSurface::rational(s.degree_v(), s.knots_v(), s.degree_u(), s.knots_u(),
+                                                    std::move(points), std::move(weights), turned)
+                         : BSplineSurface::polynomial(s.degree_v(), s.knots_v(), s.degree_u(), s.knots_u(),
+                                                      std::move(points), turned);
 }
 
 Result<Curve> transposed(const Curve& curve) {

@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "exact/thinned_spline.h"
 #include "tessera/colour.h"
 #include "tessera/geometry.h"
 
@@ -35,7 +36,8 @@ struct DescribedShape {
   std::vector<std::string> notes;         ///< what else the model lacks or changes, one sentence each
   /// How far along the surface a border may move where its curves are fitted, a length; 0: by rounding alone.
   double fit_tolerance = 0;
-  std::string contents;  ///< for a file without faces: what it holds instead, or empty
+  SplineShift spline_shift;  ///< how far splines of many spans may move to get fewer; 0: not at all
+  std::string contents;      ///< for a file without faces: what it holds instead, or empty
 };
 
 /// The key of a shape in the maps; null for a null shape.

@@ -1,5 +1,7 @@
 #include "occt/edge_polygons.h"
 
+#include <opencascade/BRep_PolygonOnClosedTriangulation.hxx>
+#include <opencascade/BRep_PolygonOnTriangulation.hxx>
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Geom2d_Curve.hxx>
 #include <opencascade/Geom_Curve.hxx>
@@ -21,14 +23,23 @@ namespace {
 
 using opencascade::handle;
 
+constexpr std::size_t edges_per_maker = 8;
+
 class PolygonMaker {
  public:
   PolygonMaker(const PatchSet& set, const FaceTriangulations& nodes, std::span<const handle<Poly_Triangulation>> made,
                const OcctShape& sources)
       : set_(set), nodes_(nodes), made_(made), sources_(sources) {}
 
+  /// Makes room for the edges of one maker, as most of them are.
+  void reserve() {
+    all_.reserve(2 * edges_per_maker);
+    stations_.reserve(64), points_.reserve(64), filled_.reserve(64);
+  }
+
   /// Adds the polygons of an edge: all its vertices, by uses.
   void add(std::span<const EdgeVertex> of_edge) {
+    const std::size_t known = all_.size();
     stations_.clear();
     for (const EdgeVertex& one : of_edge) stations_.push_back(one.s);
     std::ranges::sort(stations_);
@@ -37,6 +48,7 @@ class PolygonMaker {
       while (end < of_edge.size() && of_edge[end].use == of_edge[begin].use) ++end;
       add_use(of_edge.subspan(begin, end - begin));
     }
+    represent(known);
   }
 
   /// Takes the polygons of another one, whose edges follow.
@@ -55,12 +67,25 @@ class PolygonMaker {
           if (!shape.edges[coedge.edge].degenerate && !has_polygon(coedge.edge, face, known))
             add_point(shape, coedge.edge, face, known);
     }
+    represent(known);
     std::ranges::sort(lacking_);
     lacking_.erase(std::ranges::unique(lacking_).begin(), lacking_.end());
     return {std::move(all_), std::move(lacking_)};
   }
 
  private:
+  /// Makes what edges hold of the polygons from the known ones on.
+  void represent(std::size_t known) {
+    for (EdgePolygon& of : std::span(all_).subspan(known)) {
+      const TopLoc_Location place =
+          relative_place(sources_.faces[of.face].face.Location(), sources_.edges[of.edge].edge.Location());
+      if (of.second.IsNull())
+        of.representation = new BRep_PolygonOnTriangulation(of.first, made_[of.face], place);
+      else
+        of.representation = new BRep_PolygonOnClosedTriangulation(of.first, of.second, made_[of.face], place);
+    }
+  }
+
   struct Point {
     double s;
     int node;
@@ -81,7 +106,7 @@ class PolygonMaker {
     if (!all_.empty() && all_.back().edge == edge && all_.back().face == face) {
       if (all_.back().second.IsNull()) add_second(all_.back(), polygon);
     } else {
-      all_.push_back({edge, face, polygon, {}});
+      all_.push_back({edge, face, polygon, {}, {}});
     }
   }
 
@@ -168,7 +193,7 @@ class PolygonMaker {
     if (!is_point) return lacking_.push_back(face);
     const Interval& range = shape.edges[edge].range;
     points_ = {{range.from, start}, {range.to, end}};
-    all_.push_back({edge, face, polygon_of(edge, face), {}});
+    all_.push_back({edge, face, polygon_of(edge, face), {}, {}});
   }
 
   /// Adds the other polygon of a seam: the first one becomes that of the forward edge.
@@ -209,11 +234,11 @@ Result<EdgePolygons> edge_polygons(const PatchSet& set, const FaceTriangulations
     while (end < on_edges.size() && on_edges[end].edge == on_edges[begin].edge) ++end;
     edges.push_back(on_edges.subspan(begin, end - begin));
   }
-  constexpr std::size_t edges_per_task = 8;
-  const std::size_t tasks = std::max<std::size_t>(1, (edges.size() + edges_per_task - 1) / edges_per_task);
+  const std::size_t tasks = std::max<std::size_t>(1, (edges.size() + edges_per_maker - 1) / edges_per_maker);
   std::vector<PolygonMaker> makers(tasks, PolygonMaker(set, nodes, made, sources));
   const auto add_some = [&](std::size_t task) {
-    for (std::size_t k = task * edges_per_task; k < std::min(edges.size(), (task + 1) * edges_per_task); ++k)
+    makers[task].reserve();
+    for (std::size_t k = task * edges_per_maker; k < std::min(edges.size(), (task + 1) * edges_per_maker); ++k)
       makers[task].add(edges[k]);
     return Status();
   };

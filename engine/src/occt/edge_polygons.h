@@ -1,6 +1,7 @@
 #pragma once
 // The polygons of edges on the triangulations of their faces.
 
+#include <opencascade/BRep_CurveRepresentation.hxx>
 #include <opencascade/Poly_PolygonOnTriangulation.hxx>
 
 #include <cstdint>
@@ -19,6 +20,7 @@ struct EdgePolygon {
   std::uint32_t edge = 0, face = 0;
   /// Nodes by growing parameters of the edge. The second one is that of the reversed edge at a seam, else null.
   opencascade::handle<Poly_PolygonOnTriangulation> first, second;
+  opencascade::handle<BRep_CurveRepresentation> representation;  ///< what the edge holds of them
 };
 
 /// The polygons of all edges.

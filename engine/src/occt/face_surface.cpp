@@ -17,10 +17,12 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "exact/straight_lines.h"
+#include "exact/thinned_spline.h"
 #include "occt/guarded_calls.h"
 #include "occt/kind_of.h"
 #include "occt/spline_line.h"
@@ -49,7 +51,7 @@ Result<FaceSurface> from_extrusion(const Geom_SurfaceOfLinearExtrusion& surface,
   return extruded(*profile, vec3(surface.Direction().XYZ()), range_v(box));
 }
 
-Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain& box) {
+Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain& box, const SplineShift& most) {
   const double period_u = surface.IsUPeriodic() ? surface.UPeriod() : 0,
                period_v = surface.IsVPeriodic() ? surface.VPeriod() : 0;
   const PoleLine u = unrolled({surface.UDegree(), surface.NbUPoles(), period_u}, surface.UKnotSequence(), range_u(box));
@@ -57,6 +59,8 @@ Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain
   const bool rational = surface.IsURational() || surface.IsVRational();
   std::vector<Vec3> points;
   std::vector<double> weights;
+  points.reserve(u.poles.size() * v.poles.size());
+  if (rational) weights.reserve(u.poles.size() * v.poles.size());
   for (const int i : u.poles)
     for (const int j : v.poles) {
       points.push_back(vec3(surface.Pole(i + 1, j + 1).XYZ()));
@@ -67,12 +71,17 @@ Result<FaceSurface> from_spline(const Geom_BSplineSurface& surface, const Domain
                       std::move(points),
                       std::move(weights)};
   shorten_straight_lines(net);
+  std::optional<SplineShift> shift;
+  if (most.distance > 0) shift = thin(net, most);
   const Domain domain{net.u.part.from, net.u.part.to, net.v.part.from, net.v.part.to};
-  return with_parameters(
-      rational ? BSplineSurface::rational(net.u.degree, net.u.knots, net.v.degree, net.v.knots, net.points, net.weights,
-                                          domain)
-               : BSplineSurface::polynomial(net.u.degree, net.u.knots, net.v.degree, net.v.knots, net.points, domain),
-      {});
+  Result<FaceSurface> made =
+      with_parameters(rational ? BSplineSurface::rational(net.u.degree, net.u.knots, net.v.degree, net.v.knots,
+                                                          std::move(net.points), std::move(net.weights), domain)
+                               : BSplineSurface::polynomial(net.u.degree, net.u.knots, net.v.degree, net.v.knots,
+                                                            std::move(net.points), domain),
+                      {});
+  if (made && shift) made->shift = *shift;
+  return made;
 }
 
 Result<FaceSurface> from_bezier(const Geom_BezierSurface& surface, const Domain& box) {
@@ -118,7 +127,7 @@ Result<FaceSurface> fitted(const handle<Geom_Surface>& surface, const Domain& bo
   if (!fit.HasResult())
     return Status(StatusCode::unsupported,
                   std::string("a ") + surface->DynamicType()->Name() + " that OpenCASCADE cannot fit");
-  Result<FaceSurface> face = from_spline(*fit.Surface(), box);
+  Result<FaceSurface> face = from_spline(*fit.Surface(), box, {});
   if (face) face->fit_error = std::max(fit.MaxError(), deviation(*surface, *fit.Surface(), box));
   return face;
 }
@@ -135,9 +144,9 @@ handle<Geom_Surface> bare_surface(handle<Geom_Surface> surface) {
   }
 }
 
-Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain& box) {
+Result<FaceSurface> face_surface(const handle<Geom_Surface>& given, const Domain& box, const SplineShift& most) {
   const handle<Geom_Surface> surface = bare_surface(given);
-  if (const auto* const s = kind_of<Geom_BSplineSurface>(surface)) return from_spline(*s, box);
+  if (const auto* const s = kind_of<Geom_BSplineSurface>(surface)) return from_spline(*s, box, most);
   if (const auto* const s = kind_of<Geom_BezierSurface>(surface)) return from_bezier(*s, box);
   if (const auto* const s = kind_of<Geom_SurfaceOfRevolution>(surface)) return from_revolution(*s, box);
   if (const auto* const s = kind_of<Geom_SurfaceOfLinearExtrusion>(surface)) return from_extrusion(*s, box);

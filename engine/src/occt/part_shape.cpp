@@ -95,7 +95,7 @@ Status PartShape::try_face(PartFace& part_face) const {
   Result<FaceBox> box = face_box(border);
   if (!box) return box.status();
   const bool is_part = take_range(part_face, *box);
-  Result<FaceSurface> made = face_surface(surface, box->domain);
+  Result<FaceSurface> made = face_surface(surface, box->domain, file_->spline_shift);
   if (!made) return made.status();
   Result<FaceLoops> loops = is_part ? FaceLoops{} : face_loops(border, *box, made->parameters, edges_);
   if (!loops) {
@@ -111,6 +111,7 @@ Status PartShape::try_face(PartFace& part_face) const {
     if (Status status = turn_around(made->surface, loops->loops); !status.ok()) return status;
   part_face.source = {face, occt_parameter(made->parameters.u), occt_parameter(made->parameters.v), is_turned};
   part_face.fit_error = made->fit_error;
+  part_face.shift = made->shift;
   const std::string* const name = part_face.wholes.name;
   ShapeFace& out = part_face.made.emplace(
       ShapeFace{{name ? *name : std::string(), std::move(made->surface), affine(place.Transformation())}});
@@ -151,6 +152,7 @@ void PartShape::finish(Shape& shape, OcctShape& sources, Shortcomings& shortcomi
     }
     shortcomings.fitted += face.fit_error > 0;
     shortcomings.fit_errors.push_back(face.fit_error);
+    shortcomings.shifts.push_back(face.shift);
     shortcomings.worst_fit = std::max(shortcomings.worst_fit, face.fit_error);
     if (face.wholes.shell != no_id)
       shape_.shells[face.wholes.shell].faces.push_back(static_cast<std::uint32_t>(shape_.faces.size()));

@@ -27,6 +27,7 @@ struct Shortcomings {
   std::size_t fitted = 0;                           ///< surfaces
   double worst_fit = 0;                             ///< their largest distance
   std::vector<double> fit_errors;                   ///< of each face that is made, the distance of its surface
+  std::vector<SplineShift> shifts;                  ///< of each of these, what DescribedShape::spline_shift led to
 };
 
 /// Reads a part in its own space, wherever it is placed. Calls in this order: make(), convert() of each face, from any
@@ -61,6 +62,7 @@ class PartShape {
     OcctFace source;
     std::vector<std::string> whole;  ///< Shortcomings::whole
     double fit_error = 0;
+    SplineShift shift = {};
   };
 
   PartShape(const DescribedShape& file, const PlacedPart& placed, ShapeEdges edges)

@@ -2,16 +2,19 @@
 
 #include <opencascade/BRep_Tool.hxx>
 #include <opencascade/Geom_Curve.hxx>
+#include <opencascade/Geom_Line.hxx>
 #include <opencascade/TopExp.hxx>
 #include <opencascade/TopoDS.hxx>
 #include <opencascade/TopoDS_Vertex.hxx>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "exact/coedge_parameter.h"
 #include "occt/guarded_calls.h"
+#include "occt/kind_of.h"
 #include "occt/occt_parameter.h"
 #include "occt/spline_line.h"
 
@@ -40,6 +43,18 @@ bool turns_twice(const Geom_Curve& curve, const Interval& range) {
   return curve.IsPeriodic() && range.to - range.from > (1 + 1e-9) * curve.Period();
 }
 
+/// The curve of an edge over its range. Most are lines, which take no detour over lists of points and knots.
+Result<Curve> edge_curve(const handle<Geom_Curve>& curve, const Interval& range, std::optional<Arcs>& arcs) {
+  if (const auto* const line = kind_of<Geom_Line>(curve)) {
+    const std::array points{vec3(line->Value(range.from).XYZ()), vec3(line->Value(range.to).XYZ())};
+    return Curve::b_spline(1, points, std::array{range.from, range.from, range.to, range.to});
+  }
+  const Result<SplineLine> line = spline_line(curve, range);
+  if (!line) return line.status();
+  arcs = line->arcs;
+  return curve_of(*line);
+}
+
 }  // namespace
 
 Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& execution) {
@@ -48,6 +63,7 @@ Result<ShapeEdges> ShapeEdges::make(const TopoDS_Shape& shape, const Execution& 
     for_shapes(face, TopAbs_EDGE, [&](const TopoDS_Shape& edge) { out.edge_numbers_.add(edge); });
   });
   const std::size_t count = out.edge_numbers_.size();
+  out.vertex_numbers_.reserve(count);
   for (std::size_t k = 0; k < count; ++k)
     for_shapes(out.edge_numbers_[k], TopAbs_VERTEX,
                [&](const TopoDS_Shape& vertex) { out.vertex_numbers_.add(vertex); });
@@ -89,13 +105,12 @@ void ShapeEdges::read_edge(std::size_t k) {
   if (!curve.IsNull() && turns_twice(*curve, {from, to})) return;
   out.range = parameter.theirs = {from, to};
   if (curve.IsNull() || out.degenerate) return;
-  const Result<SplineLine> line = spline_line(curve, out.range);
-  if (!line) return;
-  const Result<Curve> made = curve_of(*line);
+  std::optional<Arcs> arcs;
+  Result<Curve> made = edge_curve(curve, out.range, arcs);
   if (!made) return;
-  out.curve = *made;
   out.range = made->domain();
-  parameter.arcs = line->arcs;
+  out.curve = *std::move(made);
+  parameter.arcs = arcs;
 }
 
 Coedge ShapeEdges::coedge(const TopoDS_Edge& edge, const TrimCurve& trim, const Interval& theirs,

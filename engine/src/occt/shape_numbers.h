@@ -4,6 +4,8 @@
 #include <opencascade/TopoDS_Iterator.hxx>
 #include <opencascade/TopoDS_Shape.hxx>
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -31,9 +33,15 @@ class ShapeNumbers {
   };
   explicit ShapeNumbers(Places places) : places_(places) {}
 
+  /// Makes room for shapes to come.
+  void reserve(std::size_t count) {
+    shapes_.reserve(count);
+    if (2 * count > table_.size()) grow(std::bit_ceil(2 * count));
+  }
+
   /// Returns the number of a shape that is not null; adds it if there is none.
   std::uint32_t add(const TopoDS_Shape& shape) {
-    if (2 * shapes_.size() >= table_.size()) grow();
+    if (2 * shapes_.size() >= table_.size()) grow(table_.empty() ? 64 : 4 * table_.size());
     std::uint32_t& number = table_[slot(shape)];
     if (number != no_id) return number;
     number = static_cast<std::uint32_t>(shapes_.size());
@@ -60,8 +68,8 @@ class ShapeNumbers {
   bool are_same(const TopoDS_Shape& a, const TopoDS_Shape& b) const {
     return places_ == Places::differ ? a.IsSame(b) : a.IsPartner(b);
   }
-  void grow() {
-    table_.assign(table_.empty() ? 64 : 4 * table_.size(), no_id);
+  void grow(std::size_t slots) {
+    table_.assign(std::max<std::size_t>(slots, 2), no_id);
     for (std::uint32_t k = 0; k < shapes_.size(); ++k) table_[slot(shapes_[k])] = k;
   }
 

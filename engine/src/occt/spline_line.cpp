@@ -26,6 +26,8 @@ SplineLine from_spline(const Geom_BSplineCurve& curve, const Interval& range) {
   PoleLine line = unrolled({curve.Degree(), curve.NbPoles(), period}, curve.KnotSequence(), range);
   SplineLine out;
   out.degree = line.degree;
+  out.points.reserve(line.poles.size());
+  if (curve.IsRational()) out.weights.reserve(line.poles.size());
   for (const int pole : line.poles) {
     out.points.push_back(vec3(curve.Pole(pole + 1).XYZ()));
     if (curve.IsRational()) out.weights.push_back(curve.Weight(pole + 1));
@@ -76,6 +78,7 @@ PoleLine unrolled(const PoleCircle& circle, const TColStd_Array1OfReal& flat, co
   line.degree = circle.degree;
   if (circle.period == 0) {
     line.knots.assign(flat.begin(), flat.end());
+    line.poles.reserve(static_cast<std::size_t>(circle.pole_count));
     for (int k = 0; k < circle.pole_count; ++k) line.poles.push_back(k);
     return line;
   }

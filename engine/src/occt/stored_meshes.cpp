@@ -1,8 +1,6 @@
 #include "occt/stored_meshes.h"
 
 #include <opencascade/BRep_ListOfCurveRepresentation.hxx>
-#include <opencascade/BRep_PolygonOnClosedTriangulation.hxx>
-#include <opencascade/BRep_PolygonOnTriangulation.hxx>
 #include <opencascade/BRep_TEdge.hxx>
 #include <opencascade/BRep_TFace.hxx>
 
@@ -11,7 +9,6 @@
 #include <vector>
 
 #include "occt/kind_of.h"
-#include "occt/relative_place.h"
 #include "occt/shape_numbers.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -45,7 +42,7 @@ class Storing {
 
   /// Finds the edges whose polygons on older triangulations go, and makes the new ones.
   Status prepare_edges(std::span<const EdgePolygon> polygons) {
-    number_of_.reserve(edges_.size());
+    shapes_.reserve(edges_.size()), number_of_.reserve(edges_.size()), edges_of_.reserve(edges_.size());
     for (const OcctEdge& edge : edges_) {
       number_of_.push_back(shapes_.add(edge.edge));
       if (shapes_.size() == edges_of_.size()) continue;
@@ -57,7 +54,8 @@ class Storing {
     for (const OfEdge& edge : edges_of_)
       if (edge.changes && edge.own->Locked())
         return Status(StatusCode::invalid_argument, "an edge is locked: unlock it first");
-    for (const EdgePolygon& polygon : polygons) add(polygon);
+    for (const EdgePolygon& polygon : polygons)
+      edges_of_[number_of_[polygon.edge]].added.Append(polygon.representation);
     return {};
   }
 
@@ -117,18 +115,6 @@ class Storing {
         curves.Remove(at);
       else
         at.Next();
-  }
-
-  void add(const EdgePolygon& polygon) {
-    const TopoDS_Edge& edge = edges_[polygon.edge].edge;
-    const TopLoc_Location place = relative_place(faces_[polygon.face].face.Location(), edge.Location());
-    const handle<Poly_Triangulation>& on = made_[polygon.face];
-    handle<BRep_CurveRepresentation> curve;
-    if (polygon.second.IsNull())
-      curve = new BRep_PolygonOnTriangulation(polygon.first, on, place);
-    else
-      curve = new BRep_PolygonOnClosedTriangulation(polygon.first, polygon.second, on, place);
-    edges_of_[number_of_[polygon.edge]].added.Append(curve);
   }
 
   std::span<const OcctFace> faces_;

@@ -87,7 +87,9 @@ class Triangulator {
   Triangulator(const TopoDS_Shape& shape, const OcctMeshOptions& options, const Execution& execution)
       : given_(shape), options_(options), progress_(execution, stage_ends) {
     described_.shape = distinct_faces(shape, repeats_);
-    if (!options.relative) described_.fit_tolerance = fit_share * options.deflection;
+    if (options.relative) return;
+    described_.fit_tolerance = fit_share * options.deflection;
+    described_.spline_shift = {fit_share * options.deflection, fit_share * options.angle.value_or(0.5)};
   }
 
   Result<OcctMeshReport> run() {
@@ -138,6 +140,7 @@ class Triangulator {
     tolerances_.assign(sources_.faces.size(), options_.deflection);
     if (!options_.relative) {
       to.tolerance = left_share * options_.deflection;
+      take_shifts(set, to);
       return to;
     }
     const auto find = [&](std::size_t k) {
@@ -150,6 +153,19 @@ class Triangulator {
       if (!(tolerance > 0)) tolerance = largest > 0 ? largest : options_.deflection;
     to.surface_tolerances.assign(tolerances_.begin(), tolerances_.begin() + std::ptrdiff_t(set.surface_count()));
     return to;
+  }
+
+  /// Leaves to surfaces that have moved the rest of the deflection, and to all the rest of the angle.
+  void take_shifts(const PatchSet& set, TessellationOptions& to) {
+    for (const SplineShift& shift : lacks_.shifts) {
+      shift_.distance = std::max(shift_.distance, shift.distance);
+      shift_.angle = std::max(shift_.angle, shift.angle);
+    }
+    if (!(shift_.distance > 0)) return;
+    if (to.angle) *to.angle -= 2 * shift_.angle;
+    for (std::size_t k = 0; k < set.surface_count(); ++k)
+      to.surface_tolerances.push_back(*to.tolerance - lacks_.shifts[k].distance);
+    to.tolerance.reset();
   }
 
   /// Makes a plan; where floats do not keep the deflection, one of positions in double.
@@ -169,7 +185,9 @@ class Triangulator {
   }
 
   /// How far borders and a fitted surface may be from the face's own.
-  double moved(std::size_t face) const { return 2 * described_.fit_tolerance + lacks_.fit_errors[face]; }
+  double moved(std::size_t face) const {
+    return 2 * described_.fit_tolerance + lacks_.fit_errors[face] + lacks_.shifts[face].distance;
+  }
 
   Status put(const PatchSet& set, const Tessellation& plan, const Mesh& mesh) {
     const Result<std::vector<EdgeVertex>> on_edges = edge_vertices(plan);
@@ -228,10 +246,18 @@ class Triangulator {
     return {};
   }
 
+  double bound_with_shifts(const PatchSet& set, const Tessellation& plan) const {
+    if (!(shift_.distance > 0)) return plan.bound();
+    double most = 0;
+    for (std::size_t k = 0; k < set.patch_count(); ++k)
+      most = std::max(most, double(plan.bounds()[k]) + lacks_.shifts[set.source(k).surface].distance);
+    return most;
+  }
+
   void state_faults(const PatchSet& set, const Tessellation& plan) {
-    report_.bound = plan.bound() + 2 * described_.fit_tolerance + lacks_.worst_fit;
+    report_.bound = bound_with_shifts(set, plan) + 2 * described_.fit_tolerance + lacks_.worst_fit;
     report_.gap = plan.gap();
-    report_.angle = plan.angle();
+    report_.angle = plan.angle() + 2 * shift_.angle;
     report_.certified = plan.certified() && lacks_.worst_fit == 0;
     report_.patches_without_angle = plan.patches_without_angle();
     for (std::size_t k = 0; k < lacks_.left_out.size(); ++k)
@@ -275,6 +301,7 @@ class Triangulator {
   OcctShape sources_;
   Shortcomings lacks_;
   std::vector<double> tolerances_;  ///< by face
+  SplineShift shift_;               ///< the largest of all surfaces
   OcctMeshReport report_;
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
 
 #include "base/infinity.h"
+#include "tess/bounds/degree_reduction.h"
 #include "tess/bounds/normal_net.h"
 #include "tess/bounds/rounded_up.h"
 
@@ -20,6 +22,10 @@ constexpr double close_enough = 1.25, varied = 0.7;
 constexpr double few_cells = 1.5;
 /// Turning per unit of a parameter that is below float's rounding of normals.
 constexpr double negligible = 0x1p-20;
+/// Pieces with more control points get fewer if that moves none by more than this, as a share of the field's length and
+/// of the angle to keep: bounds over the smallest pieces then rise by about a hundredth of the angle.
+constexpr double negligible_move = 0x1p-18;
+constexpr int many_points = 128;
 /// Radians per unit of a parameter beyond which the normal has nearly no direction somewhere.
 constexpr double max_turning = 32;
 
@@ -112,6 +118,8 @@ class Piece {
                  v = std::max(n, 1) * largest_difference(1, net_.columns);
     return std::isnan(u + v) ? Turning{infinity, infinity} : Turning{u * scale_.u / least_, v * scale_.v / least_};
   }
+  /// Returns a lower bound on the field's length along its mean direction; not above 0 if it may turn away from that.
+  double least() const { return least_; }
   /// Returns the turning at the corners, a lower bound of the largest over the piece.
   AtCorners at_corners() const {
     AtCorners corners;
@@ -168,29 +176,28 @@ class Piece {
 class TurningSearch {
  public:
   TurningSearch(const NormalNet& normal, double angle, TurningBound& bound)
-      : rounding_(normal.rounding),
-        angle_(angle),
+      : angle_(angle),
         rows_(normal.net.degree_u + 1),
         columns_(normal.net.degree_v + 1),
         memory_(std::make_unique_for_overwrite<double[]>(size_of_net() * (4 * max_depth + 2))),
         bound_(bound) {
     double* const start = memory_.get() + size_of_net() * (4 * max_depth + 1);
     scratch_ = {start, start + rows_ * columns_, start + 2 * rows_ * columns_};
-    const NormalPiece whole = net(0, 0);
+    const NormalPiece whole = net(0, 0, rows_, columns_);
     for (int k = 0; k < whole.count(); ++k) {
       const Vec3& n = normal.net.at[static_cast<std::size_t>(k)];
       whole.at[0][k] = n.x, whole.at[1][k] = n.y, whole.at[2][k] = n.z;
     }
-    visit(whole, {});
+    visit(whole, {.rounding = normal.rounding});
   }
 
  private:
   std::size_t size_of_net() const { return 3 * static_cast<std::size_t>(rows_ * columns_); }
-  /// The memory of piece `quarter` at a depth; at depth 0 there is one piece.
-  NormalPiece net(int depth, int quarter) const {
+  /// The memory of piece `quarter` at a depth; at depth 0 there is one piece. It has room for `rows_` and `columns_`.
+  NormalPiece net(int depth, int quarter, int rows, int columns) const {
     const std::size_t place = depth == 0 ? 0 : static_cast<std::size_t>(4 * (depth - 1) + quarter + 1);
     double* const start = memory_.get() + size_of_net() * place;
-    return {rows_, columns_, {start, start + rows_ * columns_, start + 2 * rows_ * columns_}};
+    return {rows, columns, {start, start + rows_ * columns_, start + 2 * rows_ * columns_}};
   }
 
   /// The place of a piece: one of 2^depth parts along each parameter.
@@ -199,12 +206,13 @@ class TurningSearch {
     int depth_u = 0, depth_v = 0;
     int i = 0, j = 0;                           ///< among those of its depth
     bool is_flat_u = false, is_flat_v = false;  ///< whether the normal does not turn there, so that nothing is cut
+    double rounding = 0;                        ///< the largest error of a control point
   };
 
   void visit(const NormalPiece& net, Place at) {
     if (!bound_.is_finite_) return;
     const Turning scale{std::ldexp(1, at.depth_u), std::ldexp(1, at.depth_v)};
-    const Piece piece(net, scale, rounding_, scratch_);
+    const Piece piece(net, scale, at.rounding, scratch_);
     const Turning bound = piece.bound();
     const AtCorners corners = piece.at_corners();
     if (std::max(corners.most.u, corners.most.v) > max_turning) bound_.is_finite_ = false;
@@ -217,14 +225,15 @@ class TurningSearch {
     }
     at.is_flat_u = at.is_flat_u || bound.u <= negligible;
     at.is_flat_v = !at.is_flat_u && (at.is_flat_v || bound.v <= negligible);
-    cut_and_visit(net, at);
+    cut_and_visit(net, at, negligible_move * angle_ * piece.least());
   }
 
-  /// Visits the parts of a piece: halves if the normal turns along one parameter alone, else quarters.
-  void cut_and_visit(const NormalPiece& net, const Place& at) {
-    const NormalPiece part[4] = {this->net(at.level + 1, 0), this->net(at.level + 1, 1), this->net(at.level + 1, 2),
-                                 this->net(at.level + 1, 3)};
-    std::copy_n(net.at[0], size_of_net(), part[3].at[0]);
+  /// Visits the parts of a piece: halves if the normal turns along one parameter alone, else quarters. `free_move`: how
+  /// far control points may move.
+  void cut_and_visit(const NormalPiece& net, Place at, double free_move) {
+    NormalPiece part[4];
+    part[3] = lowered(net, at, free_move);
+    for (int k = 0; k < 3; ++k) part[k] = this->net(at.level + 1, k, part[3].rows, part[3].columns);
     const bool cuts_u = !at.is_flat_u, cuts_v = !at.is_flat_v;
     if (cuts_u) cut(part[3], part[1], true);
     if (cuts_u && cuts_v) cut(part[1], part[0], false);
@@ -237,6 +246,34 @@ class TurningSearch {
       if (cuts_v) ++next.depth_v, next.j = 2 * at.j + k % 2;
       visit(part[k], next);
     }
+  }
+
+  /// Copies a piece to the last one of the next depth, with about half the degrees if that moves it little: cutting and
+  /// looking at it takes as long as it has points. The error counts as rounding of `at`, times the ratio of degrees, as
+  /// the field's derivatives may differ by the higher degree times it.
+  NormalPiece lowered(const NormalPiece& net, Place& at, double free_move) {
+    const auto lower = [](int count) { return count > 8 ? count / 2 + 1 : count; };
+    const int rows = lower(net.rows), columns = lower(net.columns);
+    if (net.count() > many_points && net.rows > 1 && net.columns > 1) {
+      const NormalPiece made = this->net(at.level + 1, 3, rows, columns);
+      const NetReduction reduction(reduction_of(net.rows, rows), reduction_of(net.columns, columns));
+      double moved = 0;
+      for (int c = 0; c < 3; ++c) moved = std::max(moved, reduction.apply(net.at[c], made.at[c], scratch_.first));
+      const double ratio = std::max((net.rows - 1.0) / (rows - 1), (net.columns - 1.0) / (columns - 1)),
+                   rounding = ratio * (at.rounding + 1.75 * moved);  // 1.75 > sqrt(3)
+      if (rounding <= free_move) {
+        at.rounding = rounding;
+        return made;
+      }
+    }
+    const NormalPiece copy = this->net(at.level + 1, 3, net.rows, net.columns);
+    for (int c = 0; c < 3; ++c) std::copy_n(net.at[c], net.count(), copy.at[c]);
+    return copy;
+  }
+  const DegreeReduction& reduction_of(int count, int lower) {
+    for (const DegreeReduction& known : reductions_)
+      if (known.from() == count - 1 && known.to() == lower - 1) return known;
+    return reductions_.emplace_back(count - 1, lower - 1);
   }
 
   /// Whether smaller pieces may have bounds that save cells.
@@ -270,11 +307,12 @@ class TurningSearch {
       }
   }
 
-  double rounding_, angle_;
+  double angle_;
   int rows_, columns_;
   std::unique_ptr<double[]> memory_;
   Scratch scratch_;
   Turning known_[TurningBound::parts][TurningBound::parts];
+  std::deque<DegreeReduction> reductions_;  ///< as they come to be needed
   TurningBound& bound_;
 };
 

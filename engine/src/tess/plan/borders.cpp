@@ -8,14 +8,14 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-Borders::Borders(const PatchNeeds& needs, SharedEdges edges, const EdgeRuns* runs) : edges_(std::move(edges)) {
+Borders::Borders(const PatchNeeds& needs, SharedEdges edges, const CutFaces& faces) : edges_(std::move(edges)) {
   const PatchSet::Impl& set = needs.set();
   if (set.trims) {
     drawn_.assign(needs.shapes().begin(), needs.shapes().end());
     for (const PatchTrims::Cut& cut : set.trims->cuts) drawn_[cut.patch].is_curve = true;
   }
-  weld_by(needs, runs);
-  if (runs) find_in_step(set, *runs);
+  weld_by(needs, faces.runs ? &*faces.runs : nullptr);
+  if (!faces.borders_in_step.empty()) find_in_step(faces.borders_in_step);
 }
 
 void Borders::weld_by(const PatchNeeds& needs, const EdgeRuns* runs) {
@@ -37,10 +37,10 @@ void Borders::weld_by(const PatchNeeds& needs, const EdgeRuns* runs) {
   weld_ = weld_borders(set, shapes(needs), needs.roundings(), rules, edges_);
 }
 
-void Borders::find_in_step(const PatchSet::Impl& set, const EdgeRuns& runs) {
+void Borders::find_in_step(std::span<const std::array<std::uint32_t, 2>> pairs) {
   UnionFind groups(edges_.count());
   const auto edge_of_border = [&](std::uint32_t border) { return edges_.edge(border / 4, all_sides[border % 4]); };
-  for (const auto& [a, b] : runs.borders_in_step(set))
+  for (const auto& [a, b] : pairs)
     if (const std::uint32_t of_a = edge_of_border(a), of_b = edge_of_border(b); of_a != no_id && of_b != no_id)
       groups.unite(of_a, of_b);
   std::vector<std::uint32_t> places(edges_.count(), no_id);

@@ -1,15 +1,16 @@
 #pragma once
 // The facts that neighbouring patches share along their borders, whatever the tolerance is.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "tess/closing/edge_runs.h"
 #include "tess/edges/edge_directions.h"
 #include "tess/edges/shared_edges.h"
 #include "tess/edges/weld.h"
+#include "tess/plan/cut_faces.h"
 #include "tess/plan/patch_needs.h"
 
 namespace tessera { inline namespace abi_0_1 {
@@ -18,9 +19,9 @@ namespace tessera { inline namespace abi_0_1 {
 class Borders {
  public:
   Borders() = default;
-  /// Welds the borders by the options of `needs`. `edges`: of the set, before welding; `runs`: null if edges of shapes
-  /// stay open.
-  Borders(const PatchNeeds& needs, SharedEdges edges, const EdgeRuns* runs);
+  /// Welds the borders by the options of `needs`. `edges`: of the set, before welding; `faces`: without runs if edges
+  /// of shapes stay open.
+  Borders(const PatchNeeds& needs, SharedEdges edges, const CutFaces& faces);
 
   const SharedEdges& edges() const { return edges_; }  ///< after welding
   const Weld& weld() const { return weld_; }
@@ -42,7 +43,8 @@ class Borders {
 
  private:
   void weld_by(const PatchNeeds& needs, const EdgeRuns* runs);
-  void find_in_step(const PatchSet::Impl& set, const EdgeRuns& runs);
+  /// `pairs`: as CutFaces::borders_in_step has them.
+  void find_in_step(std::span<const std::array<std::uint32_t, 2>> pairs);
 
   SharedEdges edges_;
   Weld weld_;

@@ -9,7 +9,10 @@ namespace tessera { inline namespace abi_0_1 {
 Result<CutFaces> CutFaces::of(const PatchSet::Impl& set, bool closes_edges, const Execution& execution) {
   constexpr std::size_t regions_per_task = 8;
   CutFaces made;
-  if (set.edges && closes_edges) made.runs.emplace(set);
+  if (set.edges && closes_edges) {
+    made.runs.emplace(set);
+    made.borders_in_step = made.runs->borders_in_step(set);
+  }
   if (!set.trims) return made;
   made.sides.resize(set.trims->regions.size());
   const auto find_sides = [&](std::size_t begin, std::size_t end) {
