@@ -22,16 +22,13 @@ double value_at(const Curve& table, double s) {
 
 }  // namespace
 
-double curve_parameter(const Coedge& coedge, const Curve& curve, double s) {
+double tabled_curve_parameter(const Coedge& coedge, const Curve& curve, double s) {
   const Interval& d = curve.domain();
-  const double t = coedge.parameter ? value_at(*coedge.parameter, s) : coedge.reversed ? d.from + d.to - s : s;
-  return std::clamp(t, d.from, d.to);
+  return std::clamp(value_at(*coedge.parameter, s), d.from, d.to);
 }
 
 // The span of the table in which t lies is found by its points, which are monotone; see value_at().
-double edge_parameter(const Coedge& coedge, const Curve& curve, double t) {
-  const Interval& d = curve.domain();
-  if (!coedge.parameter) return coedge.reversed ? d.from + d.to - t : t;
+double tabled_edge_parameter(const Coedge& coedge, double t) {
   const Curve& table = *coedge.parameter;
   const auto points = table.points();
   const bool grows = points.front().x <= points.back().x;

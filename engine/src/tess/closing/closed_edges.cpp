@@ -2,387 +2,354 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
-#include "base/union_find.h"
 #include "parallel/parallel_for.h"
 #include "tess/bounds/rounded_up.h"
-#include "tess/closing/station_vertices.h"
+#include "tess/closing/station_places.h"
+#include "tess/closing/vertex_inserter.h"
 #include "tess/trimmed/patch_points.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// Returns the first vertex of a division's ring at the place of this one: another one where it lies on collapsed
-/// borders.
-std::uint32_t first_at_pole(const Division& division, std::uint32_t vertex) {
-  const auto first = static_cast<std::uint32_t>(division.inner_count()),
-             end = static_cast<std::uint32_t>(division.vertex_count());
-  if (!division.collapsed.any() || vertex < first || vertex >= end) return vertex;
-  if (division.has_one_corner()) return first;
-  const auto is_pole = [&](std::size_t side) { return division.collapsed.has(all_sides[side]); };
-  const auto count = [&](std::size_t side) { return static_cast<std::uint32_t>(division.border[side].rate()); };
-  std::size_t side = 0;
-  std::uint32_t start = first;  // of the side
-  for (; side < 3 && vertex - start >= count(side); ++side) start += count(side);
-  if (vertex != start && !is_pole(side)) return vertex;
-  for (std::size_t before; is_pole(before = (side + 3) % 4); side = before)  // back along the ring
-    start = (side == 0 ? end : start) - count(before);
-  return start;
-}
-
 class Closer {
  public:
-  explicit Closer(const DividedFaces& faces)
-      : of_(faces),
-        set_(faces.set),
-        divisions_(faces.divisions),
-        cuts_(faces.cuts),
-        segments_(faces.set, faces.runs, faces.divisions, faces.cuts, faces.stations),
-        runs_(faces.runs) {}
+  explicit Closer(const DividedFaces& faces) : of_(faces), set_(faces.set), runs_(faces.runs) {}
 
   Result<ClosedEdges> run() {
-    Result<StationVertices> met =
-        station_vertices(runs_, segments_, of_.same_share, of_.is_joined, of_.lists_vertices, of_.cancel);
+    Result<StationVertices> met = station_vertices({set_, runs_, of_.divisions, of_.cuts, of_.stations, of_.is_joined,
+                                                    of_.same_share, of_.lists_vertices, of_.cancel});
     if (!met) return met.status();
     met_ = *std::move(met);
-    number_vertices();
+    numbers_.emplace(of_.divisions, of_.cuts, met_.inserted.size());
     if (Status status = evaluate(); !status.ok()) return status;
-    find_open();
-    join();
-    if (Status status = resolve_inserted(); !status.ok()) return status;
-    list_members();
+    is_open_.assign(set_.edges->edges.size(), 0);
+    if (of_.max_gap != std::numeric_limits<double>::infinity()) find_open();
+    places_.emplace(set_, runs_, met_, *numbers_, is_open_);
+    if (Status status = divide(); !status.ok()) return status;
+    list_joined();
+    lay_out_members();
+    squares_.assign(is_open_.size(), 0);
+    if (Status status = for_blocks([&](StationBlock& block) { place_single(block); }); !status.ok()) return status;
+    place_joined();
     measure();
-    if (of_.lists_vertices) list_edge_vertices();
+    if (of_.lists_vertices)
+      if (Status status = list_edge_vertices(); !status.ok()) return status;
     return std::move(out_);
   }
 
  private:
-  Status look_at_cancel() const {
-    return of_.cancel && of_.cancel->load() ? Status(StatusCode::cancelled, "cancelled by the caller") : Status();
-  }
+  /// A vertex of a place that has several stations.
+  struct JoinedVertex {
+    std::uint32_t place, number;  ///< see BoundaryNumbers
+    PatchVertex vertex;
+  };
 
-  CutPatch* cut_of(std::uint32_t patch) const { return find_cut(cuts_, patch); }
-
-  /// Gives numbers to all vertices that may lie on edges: those of rings and of cut patches, then inserted ones.
-  void number_vertices() {
-    bases_.assign(set_.patches.size() + 1, 0);
-    for (const PatchEdges::Face& face : set_.edges->faces)
-      for (const std::uint32_t patch : face.patches)
-        if (patch != no_id) bases_[patch + 1] = boundary_count(patch);
-    for (std::size_t k = 1; k < bases_.size(); ++k) bases_[k] += bases_[k - 1];
-    zeros_.assign(bases_.begin(), bases_.end());
-    for (std::size_t patch = 0; patch < divisions_.size(); ++patch)
-      if (!divisions_[patch].empty) zeros_[patch] -= static_cast<std::uint32_t>(divisions_[patch].inner_count());
-    count_ = bases_.back() + static_cast<std::uint32_t>(segments_.inserted().size());
-    is_used_.assign(count_, 0);
-    of_stations_.reserve(met_.vertices.size());
-    const auto use = [&](const PatchVertex& vertex) {
-      const std::uint32_t number = this->number(vertex);
-      is_used_[number] = 1;
-      return number;
+  template <class Visit>
+  Status for_blocks(const Visit& visit) {
+    const auto visit_some = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) visit(met_.blocks[k]);
     };
-    for (const PatchVertex& vertex : met_.vertices) of_stations_.push_back(use(vertex));
-    for (const auto& [a, b] : segments_.same()) same_.push_back({use(a), use(b)});
-    for (const EdgeSegment& gap : met_.gaps) gaps_.push_back({use(gap.low), use(gap.high)});
+    return parallel_for(met_.blocks.size(), 1, {.cancel = of_.cancel}, visit_some);
   }
-  std::uint32_t boundary_count(std::uint32_t patch) const {
-    if (const CutPatch* const cut = cut_of(patch)) return static_cast<std::uint32_t>(cut->vertices.size());
-    return divisions_[patch].empty ? 0 : static_cast<std::uint32_t>(divisions_[patch].ring_count());
+  /// Calls visit(Edge, station, its number) for the stations of edges that are closed.
+  template <class Visit>
+  void for_closed(const StationBlock& block, const Visit& visit) const {
+    for (const StationBlock::Edge& edge : block.all_edges())
+      for (std::uint32_t k = edge.first; k < (&edge + 1)->first && !is_open_[edge.edge]; ++k)
+        visit(edge, block.stations[k], block.first_station + k);
   }
-  std::uint32_t number(const PatchVertex& vertex) const {
-    return vertex.vertex & PatchVertex::inserted ? bases_.back() + (vertex.vertex ^ PatchVertex::inserted)
-                                                 : zeros_[vertex.patch] + vertex.vertex;
+  static std::pair<std::uint32_t, std::uint32_t> vertices_of(const Station& station) {
+    return {station.first, (&station + 1)->first};
   }
 
-  /// Finds the faces' own points of all vertices.
+  /// Finds the faces' own points of all vertices along edges.
   Status evaluate() {
-    own_.resize(count_);
-    constexpr std::size_t patches_per_task = 4;
+    constexpr std::size_t patches_per_task = 16, inserted_per_task = 256;
+    std::vector<std::uint8_t> is_used(numbers_->count(), 0);
+    const auto use = [&](const PatchVertex& vertex) { is_used[numbers_->of(vertex)] = 1; };
+    for (const StationBlock& block : met_.blocks) {
+      for (const PatchVertex& vertex : block.vertices) use(vertex);
+      for (const auto& [a, b] : block.same) use(a), use(b);
+      for (const StationBlock::Gap& gap : block.gaps) use(gap.low.vertex), use(gap.high.vertex);
+    }
+    own_.resize(numbers_->count());
     const auto evaluate_some = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t patch = begin; patch < end; ++patch) evaluate(static_cast<std::uint32_t>(patch));
+      for (std::size_t patch = begin; patch < end; ++patch) evaluate(static_cast<std::uint32_t>(patch), is_used);
+    };
+    const auto evaluate_inserted = [&](std::size_t begin, std::size_t end) {
+      std::optional<PatchPoints> points;
+      for (std::size_t k = begin; k < end; ++k) {
+        const InsertedVertex& vertex = met_.inserted[k];
+        if (k == begin || vertex.patch != met_.inserted[k - 1].patch)
+          points.emplace(set_.patches[vertex.patch], set_.origin);
+        own_[numbers_->first(set_.patches.size()) + k] = points->at(vertex.local);
+      }
     };
     const Execution quiet{.cancel = of_.cancel};
-    if (Status status = parallel_for(bases_.size() - 1, patches_per_task, quiet, evaluate_some); !status.ok())
+    if (Status status = parallel_for(set_.patches.size(), patches_per_task, quiet, evaluate_some); !status.ok())
       return status;
-    const std::span<const InsertedVertex> inserted = segments_.inserted();
-    std::optional<PatchPoints> points;
-    for (std::size_t k = 0; k < inserted.size(); ++k) {
-      if (k == 0 || inserted[k].patch != inserted[k - 1].patch)
-        points.emplace(set_.patches[inserted[k].patch], set_.origin);
-      own_[bases_.back() + k] = points->at(inserted[k].local);
-    }
-    return {};
+    return parallel_for(met_.inserted.size(), inserted_per_task, quiet, evaluate_inserted);
   }
-  void evaluate(std::uint32_t patch) {
-    const std::uint32_t begin = bases_[patch], end = bases_[patch + 1];
-    if (std::find(is_used_.begin() + begin, is_used_.begin() + end, 1) == is_used_.begin() + end) return;
+  void evaluate(std::uint32_t patch, std::span<const std::uint8_t> is_used) {
+    std::uint32_t number = numbers_->first(patch);
+    const std::uint32_t end = numbers_->first(patch + std::size_t{1});
+    const auto find_used = [&] {
+      number =
+          static_cast<std::uint32_t>(std::find(is_used.begin() + number, is_used.begin() + end, 1) - is_used.begin());
+    };
+    find_used();
+    if (number == end) return;
     PatchPoints points(set_.patches[patch], set_.origin);
-    const CutPatch* const cut = cut_of(patch);
-    for (std::uint32_t k = begin; k < end; ++k) {
-      if (!is_used_[k]) continue;
+    const CutPatch* const cut = find_cut(of_.cuts, patch);
+    for (; number < end; ++number, find_used()) {
+      const std::uint32_t vertex = numbers_->vertex(patch, number);
       if (cut) {
-        own_[k] = points.at(cut->vertices[k - begin]);
+        own_[number] = points.at(cut->vertices[vertex]);
       } else {
-        const Division::Parameters at = divisions_[patch].parameters(k - zeros_[patch]);
-        own_[k] = points.at({at.u, at.v});
+        const Division::Parameters at = of_.divisions[patch].parameters(vertex);
+        own_[number] = points.at({at.u, at.v});
       }
     }
   }
+  const Vec3& own(const PatchVertex& vertex) const { return own_[numbers_->of(vertex)]; }
 
   /// Finds the edges along which faces are farther apart than the largest gap.
   void find_open() {
-    is_open_.assign(set_.edges->edges.size(), 0);
     widths_.assign(is_open_.size(), 0);
-    if (of_.max_gap == std::numeric_limits<double>::infinity()) return;
-    for (const StationVertices::Station& station : met_.stations) {
-      Box3 box;
-      for (std::uint32_t k = 0; k < station.count; ++k) box.extend(own_[of_stations_[station.first + k]]);
-      const double width = box.diagonal();
-      if (width > of_.max_gap) is_open_[station.edge] = 1;
-      widths_[station.edge] = std::max(widths_[station.edge], width);
-    }
-  }
-
-  void join() {
-    sets_.emplace(count_ + set_.edges->vertices.size());
-    for (const auto& [a, b] : same_) sets_->unite(a, b);
-    for (const StationVertices::Station& station : met_.stations) {
-      if (is_open_[station.edge]) continue;
-      const std::uint32_t* const of = &of_stations_[station.first];
-      for (std::uint32_t k = 1; k < station.count; ++k) sets_->unite(of[0], of[k]);
-      if (station.vertex != no_id) sets_->unite(of[0], count_ + station.vertex);
-    }
-    join_gaps();
-  }
-
-  /// Makes a point of each line that closes a gap, if both of its ends are one place: its other vertices are there too.
-  void join_gaps() {
-    if (gaps_.empty()) return;
-    std::vector<std::uint32_t> places(count_, no_id);  // by vertex of a station: its place
-    for (const StationVertices::Station& station : met_.stations)
-      for (std::uint32_t k = 0; k < station.count && !is_open_[station.edge]; ++k)
-        places[of_stations_[station.first + k]] = sets_->find(of_stations_[station.first + k]).member;
-    UnionFind lines(count_);
-    for (const auto& [a, b] : same_) lines.unite(a, b);
-    for (const auto& [a, b] : gaps_) lines.unite(a, b);
-    std::vector<std::uint32_t> ends(count_, no_id);  // by line: the place of its ends
-    std::vector<std::uint8_t> is_apart(count_, 0);
-    for (const auto& gap : gaps_) {
-      const std::uint32_t line = lines.find(gap[0]).member;
-      for (const std::uint32_t end : gap) {
-        if (places[end] == no_id) continue;
-        is_apart[line] |= ends[line] != no_id && ends[line] != places[end];
-        ends[line] = places[end];
+    for (const StationBlock& block : met_.blocks)
+      for (const StationBlock::Edge& edge : block.all_edges()) {
+        double& width = widths_[edge.edge];
+        for (std::uint32_t k = edge.first; k < (&edge + 1)->first; ++k) {
+          Box3 box;
+          for (auto [v, end] = vertices_of(block.stations[k]); v < end; ++v) box.extend(own(block.vertices[v]));
+          width = std::max(width, box.diagonal());
+        }
+        is_open_[edge.edge] = width > of_.max_gap;
       }
-    }
-    for (const auto& gap : gaps_) {
-      const std::uint32_t line = lines.find(gap[0]).member;
-      for (const std::uint32_t end : gap)
-        if (ends[line] != no_id && !is_apart[line]) sets_->unite(end, ends[line]);
-    }
   }
 
   /// Gives inserted vertices of edges that are closed their numbers in their patches, and divides triangles.
-  Status resolve_inserted() {
-    std::vector<InsertedVertex> inserted(segments_.inserted().begin(), segments_.inserted().end());
-    std::vector<std::uint32_t> order;
-    std::vector<std::uint8_t> is_used(inserted.size(), 0);
-    for (const StationVertices::Station& station : met_.stations)
-      for (std::uint32_t k = 0; k < station.count && !is_open_[station.edge]; ++k)
-        if (const std::uint32_t v = met_.vertices[station.first + k].vertex; v & PatchVertex::inserted)
-          is_used[v ^ PatchVertex::inserted] = 1;
-    for (std::uint32_t k = 0; k < inserted.size(); ++k)
-      if (is_used[k]) order.push_back(k);
-    std::ranges::sort(order, {}, [&](std::uint32_t k) {
-      const InsertedVertex& v = inserted[k];
-      return std::tuple(v.patch, v.start, v.end, v.at, k);
-    });
-    resolved_.assign(inserted.size(), no_id);
-    std::vector<InsertedVertex> of_patch;
-    for (std::size_t begin = 0; begin < order.size();) {
-      if (Status status = look_at_cancel(); !status.ok()) return status;
-      const std::uint32_t patch = inserted[order[begin]].patch;
-      of_patch.clear();
-      std::size_t end = begin;
-      for (; end < order.size() && inserted[order[end]].patch == patch; ++end) of_patch.push_back(inserted[order[end]]);
-      const std::uint32_t first = edit(patch, of_patch);
-      for (std::size_t k = begin; k < end; ++k) resolved_[order[k]] = first + static_cast<std::uint32_t>(k - begin);
-      begin = end;
-    }
+  Status divide() {
+    if (met_.inserted.empty()) return {};
+    std::vector<std::uint8_t> is_used(met_.inserted.size(), 0);
+    for (const StationBlock& block : met_.blocks)
+      for_closed(block, [&](const StationBlock::Edge&, const Station& station, std::uint32_t) {
+        for (auto [k, end] = vertices_of(station); k < end; ++k)
+          if (const std::uint32_t v = block.vertices[k].vertex; v & PatchVertex::inserted)
+            is_used[v ^ PatchVertex::inserted] = 1;
+      });
+    Result<DividedTriangles> divided =
+        divide_triangles(met_.inserted, is_used, of_.divisions, of_.cuts, of_.chord, of_.cancel);
+    if (!divided) return divided.status();
+    out_.edits = std::move(divided->edits);
+    out_.edited_cuts = std::move(divided->edited_cuts);
+    resolved_ = std::move(divided->numbers);
     return {};
   }
-
-  /// Divides the triangles of a patch. Returns the number of the first new vertex.
-  std::uint32_t edit(std::uint32_t patch, std::span<const InsertedVertex> inserted) {
-    if (CutPatch* const cut = cut_of(patch)) {
-      const auto first = static_cast<std::uint32_t>(cut->vertices.size());
-      for (const InsertedVertex& vertex : inserted) cut->vertices.push_back(vertex.local);
-      const std::size_t count = cut->triangles.size();
-      const ChordBound chord = of_.chord(patch);
-      // A chord's sliver, and that of its parts beside it, unless these lie within.
-      if (std::ranges::any_of(inserted, &InsertedVertex::widens_sliver)) cut->sliver *= 2;
-      const auto itself = [](std::uint32_t vertex) { return vertex; };  // cut patches have one vertex at a pole
-      for (const std::uint32_t k : insert_vertices(inserted, first, itself, cut->triangles))
-        cut->measure(cut->triangles[k], chord);
-      for (std::size_t k = count; k < cut->triangles.size(); ++k) cut->measure(cut->triangles[k], chord);
-      out_.edited_cuts.push_back(static_cast<std::uint32_t>(cut - cuts_.data()));
-      return first;
-    }
-    const Division& division = divisions_[patch];
-    const auto first = static_cast<std::uint32_t>(division.vertex_count());
-    const std::size_t count = division.triangle_count() - 2 * division.cell_count();  // cells are not on borders
-    std::vector<CutPatch::Triangle> triangles(count);
-    division.write_triangles(0, triangles.data()->data(), false);
-    PatchEdit& edit = out_.edits.emplace_back();
-    edit.patch = patch;
-    for (const InsertedVertex& vertex : inserted) edit.vertices.push_back(vertex.local);
-    const auto pole = [&](std::uint32_t vertex) { return first_at_pole(division, vertex); };
-    for (const std::uint32_t k : insert_vertices(inserted, first, pole, triangles))
-      edit.changed.emplace_back(k, triangles[k]);
-    edit.added.assign(triangles.begin() + static_cast<std::ptrdiff_t>(count), triangles.end());
-    return first;
+  /// The number of a vertex in its patch; no_id if it is inserted and not used.
+  std::uint32_t in_patch(const PatchVertex& vertex) const {
+    return vertex.vertex & PatchVertex::inserted ? resolved_[vertex.vertex ^ PatchVertex::inserted] : vertex.vertex;
   }
 
-  void list_members() {
-    // Vertices where no faces meet stay: they may be welded. A place gets the number of its root first.
+  /// Lists the vertices of places that have several stations.
+  void list_joined() {
+    const auto add = [&](std::uint32_t place, const PatchVertex& vertex) {
+      if (place != no_id && in_patch(vertex) != no_id) joined_.push_back({place, numbers_->of(vertex), vertex});
+    };
+    for (const StationBlock& block : met_.blocks)
+      for_closed(block, [&](const StationBlock::Edge&, const Station& station, std::uint32_t id) {
+        if (!places_->is_joined(id)) return;
+        for (auto [k, end] = vertices_of(station); k < end; ++k) add(places_->of(id), block.vertices[k]);
+      });
+    const std::span<const PatchVertex> others = places_->others();
+    for (std::size_t k = 0; k < others.size(); ++k) add(places_->of_other(k), others[k]);
+    sort_joined();
+  }
+  /// Sorts the vertices by places and numbers, and leaves out those that are there twice.
+  void sort_joined() {
+    std::vector<std::uint32_t> first(places_->count() + 1, 0);  // by place
+    for (const JoinedVertex& vertex : joined_) ++first[vertex.place + 1];
+    for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    std::vector<JoinedVertex> sorted(joined_.size());
+    for (const JoinedVertex& vertex : joined_) sorted[next[vertex.place]++] = vertex;
+    joined_.clear();
+    for (std::size_t place = 0; place + 1 < first.size(); ++place) {
+      const auto of_place = std::span(sorted).subspan(first[place], first[place + 1] - first[place]);
+      std::ranges::sort(of_place, {}, &JoinedVertex::number);
+      for (std::size_t k = 0; k < of_place.size(); ++k)
+        if (k == 0 || of_place[k].number != of_place[k - 1].number) joined_.push_back(of_place[k]);
+    }
+  }
+
+  /// Counts the vertices of all places.
+  void lay_out_members() {
     std::vector<std::uint32_t>& first = out_.first_members;
-    first.assign(1, 0);
-    places_.assign(count_ + set_.edges->vertices.size(), no_id);
-    for (const StationVertices::Station& station : met_.stations) {
-      if (is_open_[station.edge] || !runs_.meet(station.edge)) continue;
-      std::uint32_t& place = places_[sets_->find(of_stations_[station.first]).member];
-      if (place == no_id) place = static_cast<std::uint32_t>(first.size() - 1), first.push_back(0);
-    }
-    for (std::uint32_t k = 0; k < count_; ++k) {
-      if (!is_used_[k] || (k >= bases_.back() && resolved_[k - bases_.back()] == no_id)) continue;
-      places_[k] = places_[sets_->find(k).member];
-      if (places_[k] != no_id) ++first[places_[k] + 1];
-    }
+    first.assign(places_->count() + 1, 0);
+    for (const JoinedVertex& vertex : joined_) ++first[vertex.place + 1];
+    for (const StationBlock& block : met_.blocks)
+      for_closed(block, [&](const StationBlock::Edge&, const Station& station, std::uint32_t id) {
+        if (const std::uint32_t place = places_->of(id); place != no_id && !places_->is_joined(id))
+          first[place + 1] = (&station + 1)->first - station.first;
+      });
     for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
     out_.members.resize(first.back());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    const auto put = [&](std::uint32_t k, std::uint32_t patch, std::uint32_t vertex) {
-      if (places_[k] != no_id) out_.members[next[places_[k]]++] = {patch, vertex};
-    };
-    for (std::uint32_t patch = 0; patch + 1 < bases_.size(); ++patch)
-      for (std::uint32_t k = bases_[patch]; k < bases_[patch + 1]; ++k) put(k, patch, k - zeros_[patch]);
-    const std::span<const InsertedVertex> inserted = segments_.inserted();
-    for (std::uint32_t k = 0; k < inserted.size(); ++k)
-      if (resolved_[k] != no_id) put(bases_.back() + k, inserted[k].patch, resolved_[k]);
+    out_.places.resize(places_->count());
   }
 
-  void measure() {
-    std::vector<Box3> boxes(out_.first_members.size() - 1);
-    for (std::uint32_t k = 0; k < count_; ++k)
-      if (const std::uint32_t place = places_[k]; place != no_id) boxes[place].extend(own_[k]);
-    out_.places.reserve(boxes.size());
-    for (const Box3& box : boxes) out_.places.push_back(box.centre());
-    put_at_vertices(boxes);
-    out_.gaps.assign(set_.edges->edges.size(), 0);
-    for (const StationVertices::Station& station : met_.stations) {
-      if (is_open_[station.edge]) continue;
-      double gap = 0;
-      for (const std::uint32_t vertex : std::span(of_stations_).subspan(station.first, station.count))
-        if (places_[vertex] != no_id) gap = std::max(gap, length(own_[vertex] - out_.places[places_[vertex]]));
-      out_.gap = std::max(out_.gap, gap);
-      out_.gaps[station.edge] = std::max(out_.gaps[station.edge], rounded_up(gap));
+  /// Finds the places that are one station.
+  void place_single(const StationBlock& block) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>>
+        order;  // the number of each vertex, and its place in the block
+    for_closed(block, [&](const StationBlock::Edge& edge, const Station& station, std::uint32_t id) {
+      const std::uint32_t place = places_->of(id);
+      if (place == no_id || places_->is_joined(id)) return;
+      order.clear();
+      for (auto [k, end] = vertices_of(station); k < end; ++k) order.emplace_back(numbers_->of(block.vertices[k]), k);
+      if (order.size() != 2)
+        std::ranges::sort(order);
+      else if (order[1].first < order[0].first)
+        std::swap(order[0], order[1]);
+      ClosedEdges::Member* to = &out_.members[out_.first_members[place]];
+      Box3 box;
+      for (const auto& [number, k] : order) {
+        *to++ = {block.vertices[k].patch, in_patch(block.vertices[k])};
+        box.extend(own_[number]);
+      }
+      out_.places[place] = box.centre();
+      for (const auto& [number, k] : order) extend_gap(edge.edge, own_[number], place);
+    });
+  }
+  void extend_gap(std::uint32_t edge, const Vec3& at, std::uint32_t place) {
+    const Vec3 moved = at - out_.places[place];
+    squares_[edge] = std::max(squares_[edge], dot(moved, moved));
+  }
+
+  /// Finds the places that have several stations.
+  void place_joined() {
+    std::vector<std::uint32_t> places;
+    std::vector<Box3> boxes;
+    std::uint32_t next = 0;  // the next member of the place
+    for (const JoinedVertex& vertex : joined_) {
+      if (places.empty() || places.back() != vertex.place) {
+        places.push_back(vertex.place), boxes.emplace_back();
+        next = out_.first_members[vertex.place];
+      }
+      out_.members[next++] = {vertex.vertex.patch, in_patch(vertex.vertex)};
+      boxes.back().extend(own_[vertex.number]);
     }
-    for (std::size_t edge = 0; edge < is_open_.size(); ++edge)
-      if (is_open_[edge]) out_.gaps[edge] = rounded_up(widths_[edge] / 2);
-    for (const std::uint32_t own : met_.own) out_.closed_segments += own;
-    out_.closed_segments -= count_open();
-    for (std::size_t k = 0; k < gaps_.size(); ++k) {
-      const std::uint32_t low = places_[gaps_[k][0]], high = places_[gaps_[k][1]];
-      out_.closed_segments += std::int64_t{low == high && low != no_id} - !met_.gaps[k].begins();
-    }
+    for (std::size_t k = 0; k < places.size(); ++k) out_.places[places[k]] = boxes[k].centre();
+    put_at_vertices(places, boxes);
+    for (const StationBlock& block : met_.blocks)
+      for_closed(block, [&](const StationBlock::Edge& edge, const Station& station, std::uint32_t id) {
+        if (!places_->is_joined(id) || places_->of(id) == no_id) return;
+        for (auto [k, end] = vertices_of(station); k < end; ++k)
+          extend_gap(edge.edge, own(block.vertices[k]), places_->of(id));
+      });
   }
 
   /// Moves places to the vertices that the shape states, where the faces' points lie around these. Once edits have
-  /// moved the faces away, they do not.
-  void put_at_vertices(std::span<const Box3> boxes) {
+  /// moved the faces away, they do not. `places`: growing.
+  void put_at_vertices(std::span<const std::uint32_t> places, std::span<const Box3> boxes) {
     constexpr double slack = 1e-3;  // of the box, which is flat where faces agree
     const std::span<const Vec3> vertices = set_.edges->vertices;
     for (std::uint32_t k = 0; k < vertices.size(); ++k) {
-      const std::uint32_t member = sets_->find(count_ + k).member;
-      const std::uint32_t place = member < count_ ? places_[member] : no_id;
+      const std::uint32_t place = places_->of_shape_vertex(k);
       if (place == no_id) continue;
       const Vec3 at = vertices[k] - set_.origin;
-      Box3 box = boxes[place];
+      const Box3& own = boxes[static_cast<std::size_t>(std::ranges::lower_bound(places, place) - places.begin())];
+      Box3 box = own;
       box.extend(at);
-      if (box.diagonal() <= (1 + slack) * boxes[place].diagonal()) out_.places[place] = at;
+      if (box.diagonal() <= (1 + slack) * own.diagonal()) out_.places[place] = at;
     }
   }
 
-  void list_edge_vertices() {
-    out_.edge_vertices = std::make_unique<std::vector<EdgeVertex>>();
-    std::vector<EdgeVertex>& all = *out_.edge_vertices;
-    all.reserve(met_.vertices.size());
-    std::size_t begin = 0;  // of the edge
-    const auto sort_edge = [&] {
-      std::ranges::sort(std::span(all).subspan(begin), {},
-                        [](const EdgeVertex& of) { return std::tuple(of.use, of.s, of.patch, of.vertex); });
-      begin = all.size();
-    };
-    for (const StationVertices::Station& station : met_.stations) {
-      if (!all.empty() && all.back().edge != station.edge) sort_edge();
-      for (std::uint32_t k = station.first; k < station.first + station.count; ++k) {
-        const auto [patch, own] = met_.vertices[k];
-        const bool is_inserted = (own & PatchVertex::inserted) != 0;
-        const std::uint32_t vertex = is_inserted ? resolved_[own ^ PatchVertex::inserted] : own;
-        if (vertex != no_id) all.push_back({station.edge, met_.uses[k], patch, vertex, station.s});
-      }
+  /// Finds the gaps of all edges, and how many boundary edges of the mesh closing removes.
+  void measure() {
+    out_.gaps.assign(is_open_.size(), 0);
+    for (std::size_t edge = 0; edge < squares_.size(); ++edge) {
+      if (squares_[edge] == 0) continue;
+      const double gap = std::sqrt(squares_[edge]);
+      out_.gap = std::max(out_.gap, gap);
+      out_.gaps[edge] = rounded_up(gap);
     }
-    sort_edge();
+    for (const StationBlock& block : met_.blocks)
+      for (const StationBlock::Edge& edge : block.all_edges()) {
+        if (is_open_[edge.edge]) out_.gaps[edge.edge] = rounded_up(widths_[edge.edge] / 2);
+        out_.closed_segments += edge.own;
+      }
+    out_.closed_segments -= count_open();
+    for (const StationBlock::Gap& gap : met_.blocks.back().gaps)
+      out_.closed_segments += std::int64_t{places_->is_point(gap)} - !gap.begins;
   }
 
   /// Counts the segments of edges on the boundary of the mesh. The boundary of triangles, modulo 2, stays that of their
   /// images where vertices are joined, so an even number of segments between two places has triangles on all of its
   /// sides, even where those of a sliver have become lines.
-  std::int64_t count_open() {
+  std::int64_t count_open() const {
     std::int64_t open = 0;
-    std::vector<std::array<std::uint32_t, 2>> segments;
-    segments.reserve(met_.spans.size());
-    for (const auto& [low, high, is_alone] : met_.spans) {
-      const std::uint32_t edge = met_.stations[low].edge;
-      if (is_open_[edge] || !runs_.meet(edge)) {
-        open += is_alone;  // it gets no vertices
-        continue;
-      }
-      for (std::uint32_t k = low; k < high; ++k) {
-        const std::uint32_t a = sets_->find(of_stations_[met_.stations[k].first]).member;
-        const std::uint32_t b = sets_->find(of_stations_[met_.stations[k + 1].first]).member;
-        if (a != b) segments.push_back({std::min(a, b), std::max(a, b)});
-      }
+    std::vector<std::array<std::uint32_t, 2>>
+        odd;  // the places at the ends of segments, of which there is an odd number
+    for (const StationBlock& block : met_.blocks) {
+      for (const StationBlock::Edge& edge : block.all_edges())
+        if (is_open_[edge.edge] || !runs_.meet(edge.edge)) open += edge.alone;  // it gets no vertices
+      for_closed(block, [&](const StationBlock::Edge& edge, const Station& station, std::uint32_t id) {
+        if (!station.is_odd || !runs_.meet(edge.edge)) return;
+        const auto [a, b] = std::minmax({places_->of(id), places_->of(id + 1)});
+        if (a != b) odd.push_back({a, b});
+      });
     }
-    std::ranges::sort(segments);
-    for (std::size_t from = 0, to = 0; from < segments.size(); from = to) {
-      while (to < segments.size() && segments[to] == segments[from]) ++to;
+    std::ranges::sort(odd);
+    for (std::size_t from = 0, to = 0; from < odd.size(); from = to) {
+      while (to < odd.size() && odd[to] == odd[from]) ++to;
       open += (to - from) % 2;
     }
     return open;
   }
 
+  Status list_edge_vertices() {
+    std::vector<std::vector<EdgeVertex>> of_blocks(met_.blocks.size());
+    const auto key = [](const EdgeVertex& of) { return std::tuple(of.use, of.s, of.patch, of.vertex); };
+    const auto list = [&](StationBlock& block) {
+      std::vector<EdgeVertex>& all = of_blocks[static_cast<std::size_t>(&block - met_.blocks.data())];
+      all.reserve(block.vertices.size());
+      for (const StationBlock::Edge& edge : block.all_edges()) {
+        const std::size_t begin = all.size();
+        for (std::uint32_t k = edge.first; k < (&edge + 1)->first; ++k)
+          for (auto [v, end] = vertices_of(block.stations[k]); v < end; ++v)
+            if (const std::uint32_t vertex = in_patch(block.vertices[v]); vertex != no_id)
+              all.push_back({edge.edge, block.uses[v], block.vertices[v].patch, vertex, block.stations[k].s});
+        std::ranges::sort(std::span(all).subspan(begin), {}, key);
+      }
+    };
+    if (Status status = for_blocks(list); !status.ok()) return status;
+    out_.edge_vertices = std::make_unique<std::vector<EdgeVertex>>();
+    std::size_t count = 0;
+    for (const std::vector<EdgeVertex>& of : of_blocks) count += of.size();
+    out_.edge_vertices->reserve(count);
+    for (const std::vector<EdgeVertex>& of : of_blocks)
+      out_.edge_vertices->insert(out_.edge_vertices->end(), of.begin(), of.end());
+    return {};
+  }
+
   const DividedFaces& of_;
   const PatchSet::Impl& set_;
-  std::span<const Division> divisions_;
-  std::span<CutPatch> cuts_;
-  EdgeSegments segments_;
   const EdgeRuns& runs_;
   StationVertices met_;
-  std::vector<std::uint32_t> bases_;  ///< by patch: the number of its first vertex; then that of the first inserted one
-  std::vector<std::uint32_t> zeros_;  ///< by patch: the number that its vertex 0 would have, modulo 2^32
-  std::uint32_t count_ = 0;
-  std::vector<std::uint8_t> is_used_;
-  std::vector<std::uint32_t> of_stations_;
-  std::vector<std::array<std::uint32_t, 2>> same_, gaps_;  ///< vertices; of lines that close gaps: their segments
-  std::vector<Vec3> own_;
+  std::vector<Vec3> own_;  ///< by number: points of vertices along edges, relative to the set's origin
   std::vector<std::uint8_t> is_open_;
-  std::vector<double> widths_;  ///< by edge: the largest distance of the faces' points
-  std::optional<UnionFind> sets_;
-  std::vector<std::uint32_t> resolved_, places_;
+  std::vector<double> widths_;  ///< by edge, if gaps are limited: the largest distance of the faces' points
+  std::optional<BoundaryNumbers> numbers_;
+  std::optional<StationPlaces> places_;
+  std::vector<std::uint32_t> resolved_;  ///< by inserted vertex: its number in its patch
+  std::vector<JoinedVertex> joined_;     ///< by places and numbers
+  std::vector<double> squares_;          ///< by edge: the square of the largest distance that a vertex moves
   ClosedEdges out_;
 };
 

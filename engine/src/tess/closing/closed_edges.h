@@ -5,7 +5,8 @@
 // 1. EdgeRuns list, edge by edge, the parts of loops that run along it within one patch.
 // 2. EdgeStations are found before patches are cut, so that chords and sides end at them.
 // 3. station_vertices() lists the vertices that the divided patches have at stations, and inserts those that they lack.
-// 4. close_edges() gives all vertices of a station one position.
+// 4. StationPlaces are stations with a common vertex.
+// 5. close_edges() gives all vertices of a place one position.
 //
 // Proof that the mesh is closed: along an edge, the boundaries of all its faces have vertices at the same stations, and
 // those of one station get one position. So each segment belongs to as many triangles as the edge has coedges, whatever

@@ -20,12 +20,16 @@ namespace {
 /// method, by halves where that would leave the root's interval.
 double place_on(const TrimPiece& piece, Side side, double place) {
   const auto last = static_cast<std::size_t>(piece.curve.degree());
+  if (last == 1) {
+    const double first = piece.curve.weight(0) * (along_side(side, piece.start()) - place),
+                 second = piece.curve.weight(1) * (along_side(side, piece.end()) - place);
+    return first == 0 ? 0 : second == 0 ? 1 : std::clamp(first / (first - second), 0.0, 1.0);
+  }
   std::array<double, max_degree + 1> c, of;
   for (std::size_t k = 0; k <= last; ++k)
     c[k] = piece.curve.weight(k) * (along_side(side, piece.curve.points[k]) - place);
   if (c[0] == 0 || c[last] == 0) return c[0] == 0 ? 0 : 1;
   double low = 0, high = 1, x = std::clamp(c[0] / (c[0] - c[last]), 0.0, 1.0);
-  if (last == 1) return x;
   for (int step = 0; step < 60; ++step) {
     const double* from = c.data();
     for (std::size_t n = last; n > 1; --n, from = of.data())

@@ -1,7 +1,6 @@
 #include "tess/closing/edge_segments.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include "base/impl_access.h"
@@ -29,8 +28,8 @@ bool is_convex(const TrimPiece& piece) {
 /// Whether a chord's curve is convex. Then chords between points of the curve lie between the chord and the curve, and
 /// their slivers within its own. Points that are moved towards the chord meet these chords first; those moved the other
 /// way meet the curve where they did before.
-bool is_convex(std::span<const TrimPiece> pieces, const CurveAlongEdge& curve, const EdgeSegment& segment) {
-  const auto [from, to] = std::minmax({curve.to_curve(segment.from), curve.to_curve(segment.to)});
+bool is_convex(std::span<const TrimPiece> pieces, const CurveAlongEdge& curve, const Interval& of_edge) {
+  const auto [from, to] = std::minmax({curve.to_curve(of_edge.from), curve.to_curve(of_edge.to)});
   const auto piece = std::ranges::partition_point(pieces.first(pieces.size() - 1),
                                                   [&](const TrimPiece& of) { return of.range.to <= (from + to) / 2; });
   const double same = least_same_share * (piece->range.to - piece->range.from);
@@ -43,51 +42,80 @@ EdgeSegments::EdgeSegments(const PatchSet::Impl& set, const EdgeRuns& runs, std:
                            std::span<const CutPatch> cuts, const EdgeStations* stations)
     : set_(set), runs_(runs), divisions_(divisions), cuts_(cuts), stations_(stations) {}
 
-void EdgeSegments::append(std::size_t edge, std::vector<EdgeSegment>& segments) {
+void EdgeSegments::append(std::size_t edge, SegmentList& to) {
   const std::span<const EdgeRun> runs = runs_.of(edge);
+  const auto range = [&](const EdgeSegment& of) { return std::pair(to.low(of).s, to.high(of).s); };
   for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
-    const std::size_t first = segments.size();
-    for (; end < runs.size() && runs[end].use == runs[begin].use; ++end) append(runs[end], segments);
-    const std::span<EdgeSegment> of_use = std::span(segments).subspan(first);
-    std::ranges::sort(of_use, [](const EdgeSegment& a, const EdgeSegment& b) {
-      return a.from != b.from ? a.from < b.from : a.to < b.to;
-    });
+    const std::size_t first = to.segments.size();
+    while (end < runs.size() && runs[end].use == runs[begin].use) ++end;
+    const bool reversed = end - begin > 1 && runs_.curve(runs[begin]).coedge->reversed;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t first_of_run = to.segments.size();
+      append(runs[reversed ? begin + end - 1 - k : k], to);
+      const std::span<EdgeSegment> of_run = std::span(to.segments).subspan(first_of_run);
+      if (of_run.size() > 1 && range(of_run.back()) < range(of_run.front())) std::ranges::reverse(of_run);
+    }
+    const std::span<EdgeSegment> of_use = std::span(to.segments).subspan(first);
+    if (!std::ranges::is_sorted(of_use, {}, range)) std::ranges::stable_sort(of_use, {}, range);
   }
 }
 
-void EdgeSegments::append_gaps(std::vector<EdgeSegment>& segments) {
-  for (const EdgeRun& run : runs_.gaps()) append(run, segments);
+void EdgeSegments::append_gaps(SegmentList& to) {
+  for (const EdgeRun& run : runs_.gaps()) append(run, to);
 }
 
-void EdgeSegments::append(EdgeSegment segment, const CurveAlongEdge& curve, double from, double to,
-                          std::vector<EdgeSegment>& segments) {
-  if (curve.coedge) segment.from = curve.to_edge(from), segment.to = curve.to_edge(to);
-  if (segment.from > segment.to) std::swap(segment.from, segment.to), std::swap(segment.low, segment.high);
-  segments.push_back(segment);
-}
-
-void EdgeSegments::append_chords(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
+void EdgeSegments::append_chords(const EdgeRun& run, SegmentList& to) {
   const CutPatch* const cut = cut_of(run.patch);
   if (!cut) return;
   const CurveAlongEdge curve = runs_.curve(run);
   const bool has_neighbours = runs_.edges().faces[run.face].patches.size() > 1;
-  std::uint32_t before = no_id;  // the vertex where the last chord ends
+  std::uint32_t before = no_id, end = 0;  // the vertex where the last chord ends, and its place in the list
+  double at = 0;                          // the curve's parameter there
+  const auto put_end = [&](std::uint32_t vertex, double t) {
+    if (has_neighbours && vertex != before) join_across(run, *cut, vertex);
+    if (vertex != before || t != at) end = put(curve.coedge ? curve.to_edge(t) : 0, {run.patch, vertex}, to);
+    before = vertex, at = t;
+    return end;
+  };
   auto chord = std::ranges::lower_bound(cut->loop_segments, run.first, {}, &CutPatch::LoopSegment::piece);
   for (; chord != cut->loop_segments.end() && chord->piece < run.end; ++chord) {
-    if (has_neighbours && chord->start != before) join_across(run, *cut, chord->start);
-    if (has_neighbours) join_across(run, *cut, chord->end);
-    before = chord->end;
-    append({.run = &run,
-            .low = {run.patch, chord->start},
-            .high = {run.patch, chord->end},
-            .start = chord->start,
-            .end = chord->end,
-            .has_triangle = chord->has_triangle},
-           curve, chord->from, chord->to, segments);
+    const std::uint32_t first = put_end(chord->start, chord->from), last = put_end(chord->end, chord->to);
+    append({.run = &run, .start = chord->start, .end = chord->end, .has_triangle = chord->has_triangle}, {first, last},
+           to);
   }
 }
 
-void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& segments) {
+void EdgeSegments::append_point(const EdgeRun& run, const SideVertices& side, SegmentList& to) {
+  const std::span<const TrimPiece> pieces = runs_.pieces(run);
+  const CurveAlongEdge curve = runs_.curve(run);
+  const Place at = side[0];
+  const PatchVertex point{run.patch, at.vertex};
+  for (std::size_t k = 0; k < side.size(); ++k) same_.push_back({point, PatchVertex{run.patch, side[k].vertex}});
+  const auto put_end = [&](double t) { return put(curve.coedge ? curve.to_edge(t) : 0, point, to); };
+  const std::uint32_t first = put_end(pieces.front().range.from), last = put_end(pieces.back().range.to);
+  append({.run = &run, .start = at.vertex, .end = at.vertex}, {first, last}, to);
+}
+
+void EdgeSegments::append_border(const EdgeRun& run, const SideVertices& side, std::span<const double> inside,
+                                 SegmentList& to) {
+  const std::span<const TrimPiece> pieces = runs_.pieces(run);
+  const CurveAlongEdge curve = runs_.curve(run);
+  const bool is_known = inside.size() + 2 == side.size();
+  std::array<std::uint32_t, 2> ends{};
+  Place before{};
+  for (std::size_t k = 0; k < side.size(); ++k) {
+    const Place at = side[k];
+    const Place start = std::exchange(before, at);
+    if (k > 0 && !(start.along < at.along)) continue;
+    const bool is_inside = k > 0 && k + 1 < side.size();
+    const double t = is_known && is_inside ? inside[k - 1] : parameter_at(pieces, run.side, at.along);
+    ends[1] = put(curve.coedge ? curve.to_edge(t) : 0, {run.patch, at.vertex}, to);
+    if (k > 0) append({.run = &run, .start = start.vertex, .end = at.vertex}, ends, to);
+    ends[0] = ends[1];
+  }
+}
+
+void EdgeSegments::append_side(const EdgeRun& run, SegmentList& to) {
   const CutPatch* const cut = cut_of(run.patch);
   const SideVertices side = vertices_of(run.patch, run.side);
   if (side.empty()) return;
@@ -97,33 +125,35 @@ void EdgeSegments::append_side(const EdgeRun& run, std::vector<EdgeSegment>& seg
   join_corner(runs_.edges().faces[run.face], pieces.back().end());
   const bool is_point =
       cut ? cut->poles[static_cast<std::size_t>(run.side)] != no_id : divisions_[run.patch].collapsed.has(run.side);
-  if (is_point) {
-    const PatchVertex point{run.patch, side[0].vertex};
-    for (std::size_t k = 0; k < side.size(); ++k) same_.push_back({point, PatchVertex{run.patch, side[k].vertex}});
-    append({.run = &run, .low = point, .high = point, .start = point.vertex, .end = point.vertex}, curve,
-           pieces.front().range.from, pieces.back().range.to, segments);
-    return;
-  }
-  const auto [from, to] = ends_along(run.side, pieces);
-  std::optional<double> before;  // the parameter where the last segment ends
+  if (is_point) return append_point(run, side, to);
+  const auto [from, to_place] = ends_along(run.side, pieces);
   std::span<const double> inside;
   if (stations_ && run.edge != no_id) inside = stations_->at_vertices(run);
-  std::size_t k = std::max<std::size_t>(side.count_up_to(from), 1);
-  for (Place end = side[k - 1]; k < side.size() && end.along < to; ++k) {
+  const auto put_end = [&](const Place& a, const Place& b, double along, double t) {
+    const double s = curve.coedge ? curve.to_edge(t) : 0;
+    const PatchVertex vertex = along == a.along   ? PatchVertex{run.patch, a.vertex}
+                               : along == b.along ? PatchVertex{run.patch, b.vertex}
+                                                  : vertex_between(run.patch, run.side, a, b, along);
+    return put(s, vertex, to);
+  };
+  if (!cut && side[0].along == from && side[side.size() - 1].along == to_place) {
+    append_border(run, side, inside, to);
+    return;
+  }
+  std::optional<std::uint32_t> before;  // where the last segment ends
+  const std::size_t before_run = side[0].along == from ? 1 : side.count_up_to(from);
+  std::size_t k = std::max<std::size_t>(before_run, 1);
+  for (Place end = side[k - 1]; k < side.size() && end.along < to_place; ++k) {
     const Place start = std::exchange(end, side[k]);
-    const double low = std::max(start.along, from), high = std::min(end.along, to);
+    const double low = std::max(start.along, from), high = std::min(end.along, to_place);
     if (!(low < high)) continue;
-    if (!before) before = parameter_at(pieces, run.side, low);
-    const bool is_known = end.along < to && !inside.empty();
+    if (!before) before = put_end(start, end, low, parameter_at(pieces, run.side, low));
+    const bool is_known = end.along < to_place && !inside.empty();
     const double next = is_known ? inside.front() : parameter_at(pieces, run.side, high);
     if (is_known) inside = inside.subspan(1);
-    append({.run = &run,
-            .low = vertex_at(run.patch, run.side, start, end, low),
-            .high = vertex_at(run.patch, run.side, start, end, high),
-            .start = start.vertex,
-            .end = end.vertex},
-           curve, *before, next, segments);
-    before = next;
+    const std::uint32_t last = put_end(start, end, high, next);
+    append({.run = &run, .start = start.vertex, .end = end.vertex}, {*before, last}, to);
+    before = last;
   }
 }
 
@@ -132,18 +162,13 @@ SideVertices EdgeSegments::vertices_of(std::uint32_t patch, Side side) const {
   return {divisions_[patch], set_.sources[patch].domain, side};
 }
 
-PatchVertex EdgeSegments::vertex_at(std::uint32_t patch, Side side, const Place& a, const Place& b, double along) {
-  if (along == a.along) return {patch, a.vertex};
-  if (along == b.along) return {patch, b.vertex};
-  const std::uint64_t key =
-      std::bit_cast<std::uint64_t>(along) * 0x9E3779B97F4A7C15u + 4 * patch + static_cast<std::uint64_t>(side);
-  const auto [first, last] = on_sides_.equal_range(key);
-  for (auto known = first; known != last; ++known) {
-    const InsertedVertex& vertex = inserted_[known->second];
-    if (vertex.patch == patch && vertex.start == a.vertex && vertex.end == b.vertex && vertex.at == along)
-      return {patch, PatchVertex::inserted | known->second};
-  }
-  on_sides_.emplace(key, static_cast<std::uint32_t>(inserted_.size()));
+PatchVertex EdgeSegments::vertex_between(std::uint32_t patch, Side side, const Place& a, const Place& b, double along) {
+  const std::tuple place(patch, a.vertex, b.vertex, along);
+  std::vector<std::uint32_t>& on_sides = inserted_.on_sides;
+  const auto place_of = [&](std::uint32_t k) { return inserted_.all[k].place(); };
+  const auto known = std::ranges::lower_bound(on_sides, place, {}, place_of);
+  if (known != on_sides.end() && place_of(*known) == place) return {patch, PatchVertex::inserted | *known};
+  on_sides.insert(known, static_cast<std::uint32_t>(inserted_.all.size()));
   return insert_on_side(patch, side, a.vertex, b.vertex, along);
 }
 
@@ -152,24 +177,30 @@ PatchVertex EdgeSegments::insert_on_side(std::uint32_t patch, Side side, std::ui
   const Domain domain = set_.sources[patch].domain;
   const double place = runs_along_u(side) ? domain.local_u(along) : domain.local_v(along);
   const ParameterPoint local = point_beside(side, place, is_far(side));
-  inserted_.push_back({patch, start, end, along, local});
-  return {patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
+  inserted_.all.push_back({patch, start, end, along, local});
+  return {patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.all.size() - 1)};
 }
 
-PatchVertex EdgeSegments::insert(const EdgeSegment& segment, double s) {
+EdgeEnd EdgeSegments::insert(const EdgeSegment& segment, const Interval& range, double s) {
   const EdgeRun& run = *segment.run;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
-  const double t = runs_.curve(run).to_curve(s);
+  const CurveAlongEdge curve = runs_.curve(run);
+  const double t = curve.to_curve(s);
   const ParameterPoint at = point_at(pieces, t);
-  if (run.is_side) return insert_on_side(run.patch, run.side, segment.start, segment.end, along_side(run.side, at));
-  const Domain domain = set_.sources[run.patch].domain;
-  inserted_.push_back({run.patch,
-                       segment.start,
-                       segment.end,
-                       t,
-                       {std::clamp(domain.local_u(at.u), 0.0, 1.0), std::clamp(domain.local_v(at.v), 0.0, 1.0)},
-                       !is_convex(pieces, runs_.curve(run), segment)});
-  return {run.patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.size() - 1)};
+  EdgeEnd end{.s = s};
+  if (run.is_side) {
+    end.vertex = insert_on_side(run.patch, run.side, segment.start, segment.end, along_side(run.side, at));
+  } else {
+    const Domain domain = set_.sources[run.patch].domain;
+    end.vertex = {run.patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.all.size())};
+    inserted_.all.push_back({run.patch,
+                             segment.start,
+                             segment.end,
+                             t,
+                             {std::clamp(domain.local_u(at.u), 0.0, 1.0), std::clamp(domain.local_v(at.v), 0.0, 1.0)},
+                             !is_convex(pieces, curve, range)});
+  }
+  return end;
 }
 
 std::optional<std::uint32_t> EdgeSegments::corner_vertex(std::uint32_t patch, bool end_u, bool end_v) const {
@@ -180,9 +211,12 @@ std::optional<std::uint32_t> EdgeSegments::corner_vertex(std::uint32_t patch, bo
         return vertex.vertex;
     return {};
   }
-  if (divisions_[patch].empty) return {};
-  const SideVertices side = vertices_of(patch, end_v ? Side::v1 : Side::v0);
-  return side[end_u ? side.size() - 1 : 0].vertex;
+  const Division& division = divisions_[patch];
+  if (division.empty) return {};
+  int on_ring = 0;
+  for (std::size_t side = 0; side < (end_v ? (end_u ? 2u : 3u) : (end_u ? 1u : 0u)); ++side)
+    on_ring += division.border[side].rate();
+  return static_cast<std::uint32_t>(division.inner_count()) + static_cast<std::uint32_t>(on_ring);
 }
 
 // A neighbour often has the vertex in a run of its own, but not where the loop leaves the patch along a line that
@@ -216,7 +250,8 @@ void EdgeSegments::join_across(const EdgeRun& run, const CutPatch& cut, std::uin
 }
 
 void EdgeSegments::join_corner(const PatchEdges::Face& face, const ParameterPoint& at) {
-  if (face.patches.size() == 1) return;
+  if (face.patches.size() == 1 || (last_face_ == &face && last_corner_ == at)) return;
+  last_face_ = &face, last_corner_ = at;
   const TrimRegion::Impl& region = impl_of(face.region);
   const std::vector<double>&u = region.lines.u.lines, &v = region.lines.v.lines;
   const auto i = std::ranges::lower_bound(u, at.u) - u.begin(), j = std::ranges::lower_bound(v, at.v) - v.begin();

@@ -2,14 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
+/// Sorts a list that consists of a few sorted parts, each growing or falling.
+void sort_parts(std::vector<double>& list, std::vector<double>& room) {
+  constexpr int max_merges = 8;
+  auto middle = list.begin();  // the end of the sorted part
+  for (int merges = 0; middle != list.end(); ++merges) {
+    if (merges > max_merges) {
+      std::ranges::sort(list);
+      return;
+    }
+    auto end = std::is_sorted_until(middle, list.end());
+    if (end == middle + 1 && end != list.end()) {
+      end = std::is_sorted_until(middle, list.end(), std::greater<>());
+      std::reverse(middle, end);
+    }
+    if (middle != list.begin() && *middle < *(middle - 1)) {
+      room.assign(list.begin(), middle);  // so that no element is overwritten before it is read
+      std::merge(room.begin(), room.end(), middle, end, list.begin());
+    }
+    middle = end;
+  }
+}
+
 /// Sorts parameters, and keeps the first of those that count as one.
-void sort_distinct(std::vector<double>& list, double same) {
-  std::ranges::sort(list);
+void sort_distinct(std::vector<double>& list, double same, std::vector<double>& room) {
+  sort_parts(list, room);
   std::size_t count = 0;
   for (const double s : list)
     if (count == 0 || s - list[count - 1] > same) list[count++] = s;
@@ -28,14 +51,8 @@ void EdgeStations::find(const PatchSet::Impl& set, std::size_t edge,
   const Interval& range = runs_->edges().edges[edge].range;
   const double same = same_share_ * (range.to - range.from);
   std::vector<double>& stations = stations_[edge];
-  for (const EdgeRun& run : runs) {
-    const std::span<const TrimPiece> pieces = runs_->pieces(run);
-    const CurveAlongEdge curve = runs_->curve(run);
-    stations.push_back(curve.to_edge(pieces.front().range.from));
-    stations.push_back(curve.to_edge(pieces.back().range.to));
-    if (const auto along = whole(run)) add_vertices(run, set.sources[run.patch].domain, *along, stations);
-  }
-  sort_distinct(stations, same);
+  for (const EdgeRun& run : runs) add_own(run, set.sources[run.patch].domain, whole(run), stations);
+  sort_distinct(stations, same, workspace.room);
   const auto divide_along = [&](bool reversed) {
     workspace.found.clear();
     for (const EdgeRun& run : runs)
@@ -44,7 +61,7 @@ void EdgeStations::find(const PatchSet::Impl& set, std::size_t edge,
   };
   const auto add_found = [&] {
     stations.insert(stations.end(), workspace.found.begin(), workspace.found.end());
-    sort_distinct(stations, same);
+    sort_distinct(stations, same, workspace.room);
   };
   // The direction that needs more stations comes first: they often do for the other one. This does not depend on the
   // order of faces.
@@ -71,20 +88,27 @@ void EdgeStations::keep(EdgeStations& before, std::size_t edge) {
   for (const EdgeRun& run : runs_->of(edge)) of(run) = std::move(before.of(run));
 }
 
-void EdgeStations::add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments,
-                                std::vector<double>& found) {
+void EdgeStations::add_own(const EdgeRun& run, const Domain& domain, const std::optional<Segments>& segments,
+                           std::vector<double>& found) {
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
   const CurveAlongEdge curve = runs_->curve(run);
-  const auto [low, high] = ends_along(run.side, pieces);
-  const auto [begin, end] = range_along(run.side, domain);
-  std::vector<double>& parameters = of(run).chords.parameters;
-  parameters.reserve(static_cast<std::size_t>(segments.rate()) + 1);
-  for (int k = 0; k <= segments.rate(); ++k) {
-    const double at = line_at(begin, end, segments, k);
-    if (!(at > low && at < high)) continue;
-    parameters.push_back(parameter_at(pieces, run.side, at));
-    found.push_back(curve.to_edge(parameters.back()));
+  const double from = curve.to_edge(pieces.front().range.from), to = curve.to_edge(pieces.back().range.to);
+  const bool is_backward =
+      segments && along_side(run.side, pieces.front().start()) > along_side(run.side, pieces.back().end());
+  found.push_back(is_backward ? to : from);
+  if (segments) {
+    const auto [low, high] = ends_along(run.side, pieces);
+    const auto [begin, end] = range_along(run.side, domain);
+    std::vector<double>& parameters = of(run).chords.parameters;
+    parameters.reserve(static_cast<std::size_t>(segments->rate()) + 1);
+    for (int k = 0; k <= segments->rate(); ++k) {
+      const double at = line_at(begin, end, *segments, k);
+      if (!(at > low && at < high)) continue;
+      parameters.push_back(parameter_at(pieces, run.side, at));
+      found.push_back(curve.to_edge(parameters.back()));
+    }
   }
+  found.push_back(is_backward ? from : to);
 }
 
 void EdgeStations::divide(const EdgeRun& run, const ChordLimits& limits, Workspace& workspace) {
@@ -135,20 +159,19 @@ void EdgeStations::add_segments(const EdgeRun& run, const ChordLimits& limits, s
 void EdgeStations::list(const EdgeRun& run) {
   RunStations& of_run = of(run);
   of_run.first = run.first, of_run.end = run.end;
-  of_run.at.clear();
   const std::span<const TrimPiece> pieces = runs_->pieces(run);
   const CurveAlongEdge curve = runs_->curve(run);
   const Interval& range = curve.curve->domain();
   of_run.same = same_share_ * (range.to - range.from);
   const std::vector<double>& stations = stations_[run.edge];
-  of_run.at.reserve(stations.size());
   const auto [from, to] =
       std::minmax({curve.to_edge(pieces.front().range.from), curve.to_edge(pieces.back().range.to)});
   auto station = std::ranges::lower_bound(stations, from);
   if (station != stations.begin()) --station;
-  for (; station != stations.end() && (*station <= to || station == stations.begin() || *(station - 1) <= to);
-       ++station)
-    of_run.at.push_back(curve.to_curve(*station));
+  auto end = std::ranges::upper_bound(station, stations.end(), to);
+  if (end != stations.end()) ++end;
+  of_run.at.resize(static_cast<std::size_t>(end - station));
+  std::transform(station, end, of_run.at.begin(), [&](double s) { return curve.to_curve(s); });
   if (of_run.at.size() > 1 && of_run.at.front() > of_run.at.back()) std::ranges::reverse(of_run.at);
 }
 

@@ -25,7 +25,7 @@ class EdgeStations {
   /// The memory that a thread finds stations with.
   struct Workspace {
     PieceChords layer;
-    std::vector<double> found, found_along;
+    std::vector<double> found, found_along, room;
   };
   /// Finds the stations of an edge. Threads: any number, each with its own edges and its own workspace.
   ///
@@ -40,6 +40,8 @@ class EdgeStations {
   bool has_same(const EdgeStations& before, std::size_t edge) const {
     return stations_[edge] == before.stations_[edge];
   }
+  /// The number of an edge's stations; 0 if it has a single coedge, or no chords.
+  std::size_t count(std::size_t edge) const { return stations_[edge].size(); }
   /// The stations along the boundary of a cut patch, valid while this object is.
   PatchStations of(std::uint32_t patch) const;
   /// The parameters of the loop's curve where a whole patch's side has vertices within a run, along the side, without
@@ -50,8 +52,10 @@ class EdgeStations {
 
  private:
   RunStations& of(const EdgeRun& run) { return of_runs_[runs_->index(run)]; }
-  /// Adds the places of a whole patch's vertices along the side of a run, without its ends.
-  void add_vertices(const EdgeRun& run, const Domain& domain, const Segments& segments, std::vector<double>& found);
+  /// Adds the ends of a run, and between them the places of a whole patch's vertices along its side. `segments`: of the
+  /// side; none if loops cut the patch.
+  void add_own(const EdgeRun& run, const Domain& domain, const std::optional<Segments>& segments,
+               std::vector<double>& found);
   /// Adds the places where a run in a cut patch must be divided between the stations.
   void divide(const EdgeRun& run, const ChordLimits& limits, Workspace& workspace);
   /// Lays the chords of a run, which end at the stations.

@@ -31,8 +31,10 @@ class SideVertices {
     if (division.empty) return;
     segments_ = division.border[static_cast<std::size_t>(side)];
     size_ = static_cast<std::size_t>(segments_.rate()) + 1;
+    ring_ = first_ = static_cast<std::uint32_t>(division.inner_count());
+    ring_end_ = ring_ + static_cast<std::uint32_t>(division.ring_count());
     for (std::size_t before = 0; before < static_cast<std::size_t>(side); ++before)
-      first_ += division.border[before].rate();
+      first_ += static_cast<std::uint32_t>(division.border[before].rate());
   }
   /// The side of a cut patch.
   SideVertices(const CutPatch& cut, Side side)
@@ -44,7 +46,8 @@ class SideVertices {
   Place operator[](std::size_t k) const {
     if (!division_) return {of_cut_[k].along, of_cut_[k].vertex};
     const int at = static_cast<int>(k);
-    return {line_at(from_, to_, segments_, at), ring_vertex(is_backward(side_) ? segments_.rate() - at : at)};
+    const std::uint32_t vertex = first_ + static_cast<std::uint32_t>(is_backward(side_) ? segments_.rate() - at : at);
+    return {line_at(from_, to_, segments_, at), vertex == ring_end_ ? ring_ : vertex};
   }
   /// Returns the number of vertices before a place, or up to and including it.
   std::size_t count_before(double along) const {
@@ -60,17 +63,11 @@ class SideVertices {
     return *std::ranges::partition_point(std::views::iota(std::size_t{0}, size_),
                                          [&](std::size_t k) { return is_before((*this)[k]); });
   }
-  /// The vertex at point k of the side, in the direction of the ring.
-  std::uint32_t ring_vertex(int k) const {
-    const auto at = static_cast<std::size_t>(first_ + k);
-    return static_cast<std::uint32_t>(division_->inner_count() + (at == division_->ring_count() ? 0 : at));
-  }
-
   const Division* division_ = nullptr;  ///< null if the patch is cut
   std::span<const CutPatch::SideVertex> of_cut_;
   Side side_{};
   Segments segments_;
-  int first_ = 0;  ///< the ring's points before the side
+  std::uint32_t ring_ = 0, ring_end_ = 0, first_ = 0;  ///< vertices of the ring, and the first of the side
   double from_ = 0, to_ = 0;
   std::size_t size_ = 0;
 };

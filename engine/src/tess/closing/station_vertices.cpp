@@ -2,58 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "parallel/parallel_for.h"
 
 namespace tessera { inline namespace abi_0_1 {
 namespace {
 
-/// The stations of one edge after the other.
+/// Lists the stations of one edge after the other.
 class StationLister {
  public:
-  StationLister(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                std::span<const std::uint8_t> is_joined, bool with_uses)
-      : runs_(runs), all_(segments), same_share_(same_share), is_joined_(is_joined), with_uses_(with_uses) {}
+  /// `size`: about how many vertices there will be.
+  StationLister(const StationRequest& of, std::size_t size, StationBlock& out)
+      : of_(of), out_(out), all_(of.set, of.runs, of.divisions, of.cuts, of.stations) {
+    out.stations.reserve(size / 2 + 1);
+    out.vertices.reserve(size);
+    if (of.with_uses) out.uses.reserve(size);
+  }
 
-  Result<StationVertices> run(const std::atomic<bool>* cancel) {
-    const std::size_t edges = runs_.edges().edges.size();
-    out_.own.resize(edges);
-    out_.stations.reserve(4 * edges);
-    out_.vertices.reserve(8 * edges);
-    out_.spans.reserve(8 * edges);
-    if (with_uses_) out_.uses.reserve(8 * edges);
-    for (std::uint32_t edge = 0; edge < edges; ++edge) {
-      if (cancel && cancel->load()) return Status(StatusCode::cancelled, "cancelled by the caller");
-      segments_.clear();
-      all_.append(edge, segments_);
-      if (!segments_.empty()) add_edge(edge);
-    }
-    all_.append_gaps(out_.gaps);
-    std::erase_if(out_.gaps, [&](const EdgeSegment& gap) { return !is_alone(gap); });
-    return std::move(out_);
+  void add_edge(std::uint32_t id) {
+    list_.clear();
+    all_.append(id, list_);
+    if (list_.segments.empty()) return;
+    const PatchEdges::Edge& edge = of_.runs.edges().edges[id];
+    const double same = of_.same_share * (edge.range.to - edge.range.from);
+    out_.edges.push_back({.edge = id, .first = static_cast<std::uint32_t>(out_.stations.size())});
+    list_own();
+    find_stations(same, least_same_share * (edge.range.to - edge.range.from));
+    visit_segments();
+    put(edge, same);
+  }
+  void add_gaps() {
+    list_.clear();
+    all_.append_gaps(list_);
+    for (const EdgeSegment& segment : list_.segments)
+      if (segment.start != segment.end && segment.has_triangle && !is_joined(*segment.run))
+        out_.gaps.push_back({list_.low(segment), list_.high(segment), list_.begins(segment)});
+  }
+  /// Ends the lists. Returns the vertices that were inserted.
+  InsertedVertices finish() {
+    out_.edges.push_back({.edge = no_id, .first = static_cast<std::uint32_t>(out_.stations.size())});
+    out_.stations.push_back({.first = static_cast<std::uint32_t>(out_.vertices.size())});
+    out_.same = std::move(all_.same());
+    return std::move(all_.inserted());
   }
 
  private:
+  /// A vertex of one use of the edge.
   struct OwnVertex {
     double s;
-    PatchVertex vertex;
+    std::uint32_t end;  ///< into the list's ends
     std::uint32_t use;  ///< see EdgeRun
-    friend bool operator==(const OwnVertex&, const OwnVertex&) = default;
+  };
+  /// Parameters that count as one.
+  struct Range {
+    double from, to;
+    bool changes;  ///< whether an odd number of segments begins or ends here
   };
 
-  void add_edge(std::uint32_t id) {
-    const PatchEdges::Edge& edge = runs_.edges().edges[id];
-    const double same = same_share_ * (edge.range.to - edge.range.from);
+  /// Lists the vertices of all uses by growing parameters.
+  void list_own() {
     own_.clear();
-    for (const EdgeSegment& segment : segments_) {
-      const OwnVertex low{segment.from, segment.low, segment.run->use};
-      if (own_.empty() || !(own_.back() == low)) own_.push_back(low);
-      own_.push_back({segment.to, segment.high, segment.run->use});
+    std::size_t first = 0, uses = 0;  // the first vertex of the use, and the number of uses
+    std::uint32_t use = no_id;
+    const auto end_use = [&] {
+      if (++uses <= 2) merge(first);
+      first = own_.size();
+    };
+    for (const EdgeSegment& segment : list_.segments) {
+      if (segment.run->use != use && use != no_id) end_use();
+      use = segment.run->use;
+      if (own_.size() == first || !is_last(segment.low)) own_.push_back({list_.low(segment).s, segment.low, use});
+      own_.push_back({list_.high(segment).s, segment.high, use});
     }
-    std::ranges::sort(own_, {}, &OwnVertex::s);
-    find_stations(same, least_same_share * (edge.range.to - edge.range.from));
-    if (segments_.front().run->use != segments_.back().run->use) insert_missing();
-    for (const EdgeSegment& segment : segments_) out_.own[id] += is_alone(segment) && segment.begins();
-    put_spans();
-    put(id, edge, same);
+    end_use();
+    if (uses > 2) std::ranges::stable_sort(own_, {}, &OwnVertex::s);
+  }
+  bool is_last(std::uint32_t end) const {
+    const EdgeEnd &last = list_.ends[own_.back().end], &next = list_.ends[end];
+    return own_.back().end == end || (last.s == next.s && last.vertex == next.vertex);
+  }
+  /// Merges the vertices from place `middle` on into those before, which are sorted.
+  void merge(std::size_t middle) {
+    const auto at = own_.begin() + static_cast<std::ptrdiff_t>(middle);
+    if (!std::ranges::is_sorted(at, own_.end(), {}, &OwnVertex::s))
+      std::ranges::stable_sort(at, own_.end(), {}, &OwnVertex::s);
+    if (middle == 0) return;
+    merged_.resize(own_.size());
+    std::ranges::merge(own_.begin(), at, at, own_.end(), merged_.begin(), {}, &OwnVertex::s, &OwnVertex::s);
+    own_.swap(merged_);
   }
 
   /// Finds the parameters that count as one: those within `same`. Two of one use do only within `least`, so that no
@@ -62,91 +99,180 @@ class StationLister {
     stations_.clear();
     std::size_t first = 0;  // the first of the station
     for (std::size_t k = 0; k < own_.size(); ++k) {
-      const double s = own_[k].s;
-      const auto is_apart = [&](const OwnVertex& of) { return of.use == own_[k].use && s - of.s > least; };
-      const std::span<const OwnVertex> before = std::span(own_).subspan(first, k - first);
-      if (stations_.empty() || s - stations_.back().to > same) {
-        stations_.push_back({s, s});
+      const OwnVertex own = own_[k];
+      if (k == 0 || own.s - stations_.back().to > same) {
+        stations_.push_back({own.s, own.s, false});
         first = k;
-      } else if (std::ranges::any_of(before, is_apart)) {
-        for (first = k; own_[first - 1].s == s;) --first;
+        continue;
+      }
+      const auto is_apart = [&](const OwnVertex& of) { return of.use == own.use && own.s - of.s > least; };
+      if (std::any_of(&own_[first], &own_[k], is_apart)) {
+        for (first = k; own_[first - 1].s == own.s;) --first;
         stations_.back().to = own_[first - 1].s;
-        stations_.push_back({s, s});
+        stations_.push_back({own.s, own.s, false});
       }
-      stations_.back().to = s;
+      stations_.back().to = own.s;
     }
   }
 
-  /// Whether another patch has triangles on a segment.
-  bool is_joined(const EdgeSegment& segment) const {
-    const EdgeRun& run = *segment.run;
-    return run.is_side && is_joined_[4 * run.patch + static_cast<std::size_t>(run.side)];
-  }
-  /// Whether a single triangle has a segment.
-  bool is_alone(const EdgeSegment& segment) const {
-    return segment.start != segment.end && segment.has_triangle && !is_joined(segment);
+  /// Whether another patch has triangles on the segments of a run.
+  bool is_joined(const EdgeRun& run) const {
+    return run.is_side && of_.is_joined[4 * run.patch + static_cast<std::size_t>(run.side)];
   }
 
-  void put_spans() {
-    const auto first = static_cast<std::uint32_t>(out_.stations.size());
-    const auto station_of = [&](double s) {
-      return first +
-             static_cast<std::uint32_t>(std::ranges::lower_bound(stations_, s, {}, &Interval::to) - stations_.begin());
-    };
-    for (const EdgeSegment& segment : segments_)
-      if (segment.start != segment.end)
-        out_.spans.push_back({station_of(segment.from), station_of(segment.to), is_alone(segment)});
-  }
-
-  /// Inserts vertices at the stations that lie strictly inside a segment.
-  void insert_missing() {
-    const std::size_t before = own_.size();
-    std::uint32_t use = no_id;
-    auto after = stations_.begin();  // the first station after the segment's lower end
-    for (const EdgeSegment& segment : segments_) {
-      if (segment.run->use != use) use = segment.run->use, after = stations_.begin();
-      while (after != stations_.end() && after->from <= segment.from) ++after;
+  /// Notes the stations where segments begin and end, and inserts vertices at those that lie strictly inside a segment
+  /// if the edge has several uses.
+  void visit_segments() {
+    const bool meet = list_.segments.front().run->use != list_.segments.back().run->use;
+    const std::size_t before = own_.size(), last = stations_.size() - 1;
+    const EdgeRun* run = nullptr;
+    bool is_joined = false;
+    std::size_t low = 0;  // the station of the segment's lower end
+    StationBlock::Edge& edge = out_.edges.back();
+    for (const EdgeSegment& segment : list_.segments) {
+      if (segment.run != run) {
+        if (run && segment.run->use != run->use) low = 0;
+        run = segment.run;
+        is_joined = this->is_joined(*run);
+      }
+      const Interval range{list_.low(segment).s, list_.high(segment).s};
       const bool is_point = segment.start == segment.end;
-      for (auto at = after; at != stations_.end() && at->to < segment.to; ++at)
-        own_.push_back({at->from, is_point ? segment.low : all_.insert(segment, at->from), use});
+      while (low < last && stations_[low].to < range.from) ++low;
+      std::size_t high = low;
+      for (; high < last && stations_[high].to < range.to; ++high)
+        if (meet && high > low) insert(segment, range, stations_[high].from, is_point);
+      if (is_point) continue;
+      stations_[low].changes = !stations_[low].changes;
+      stations_[high].changes = !stations_[high].changes;
+      if (is_joined || !segment.has_triangle) continue;
+      ++edge.alone;
+      edge.own += list_.begins(segment);
     }
-    if (own_.size() > before) std::ranges::sort(own_, {}, &OwnVertex::s);
+    if (own_.size() > before) merge(before);
+  }
+  void insert(const EdgeSegment& segment, const Interval& range, double s, bool is_point) {
+    std::uint32_t end = segment.low;
+    if (!is_point) {
+      end = static_cast<std::uint32_t>(list_.ends.size());
+      list_.ends.push_back(all_.insert(segment, range, s));
+    }
+    own_.push_back({s, end, segment.run->use});
   }
 
-  void put(std::uint32_t id, const PatchEdges::Edge& edge, double same) {
+  void put(const PatchEdges::Edge& edge, double same) {
+    const std::size_t first_station = out_.stations.size(), count = out_.vertices.size() + own_.size();
+    std::size_t next = out_.vertices.size();
+    out_.vertices.resize(count);
+    if (of_.with_uses) out_.uses.resize(count);
     auto own = own_.begin();
-    for (const auto& [from, to] : stations_) {
-      StationVertices::Station station{id, no_id, static_cast<std::uint32_t>(out_.vertices.size()), 0, from};
-      for (; own != own_.end() && own->s <= to; ++own) {
-        out_.vertices.push_back(own->vertex);
-        if (with_uses_) out_.uses.push_back(own->use);
+    bool is_odd = false;
+    for (const Range& range : stations_) {
+      is_odd ^= range.changes;
+      const auto first = static_cast<std::uint32_t>(next);
+      out_.stations.push_back({range.from, edge.degenerate ? edge.start : no_id, first, is_odd});
+      for (; own != own_.end() && own->s <= range.to; ++own, ++next) {
+        out_.vertices[next] = list_.ends[own->end].vertex;
+        if (of_.with_uses) out_.uses[next] = own->use;
       }
-      station.count = static_cast<std::uint32_t>(out_.vertices.size()) - station.first;
-      if (edge.degenerate || (from == stations_.front().from && std::abs(from - edge.range.from) <= same))
-        station.vertex = edge.start;
-      else if (to == stations_.back().to && std::abs(to - edge.range.to) <= same)
-        station.vertex = edge.end;
-      out_.stations.push_back(station);
     }
+    if (edge.degenerate) return;
+    Station &begin = out_.stations[first_station], &end = out_.stations.back();
+    if (std::abs(stations_.back().to - edge.range.to) <= same) end.vertex = edge.end;
+    if (std::abs(stations_.front().from - edge.range.from) <= same) begin.vertex = edge.start;
   }
 
-  const EdgeRuns& runs_;
-  EdgeSegments& all_;
-  double same_share_;
-  std::span<const std::uint8_t> is_joined_;
-  bool with_uses_;
-  StationVertices out_;
-  std::vector<EdgeSegment> segments_;
-  std::vector<OwnVertex> own_;
-  std::vector<Interval> stations_;  ///< of parameters that count as one
+  const StationRequest& of_;
+  StationBlock& out_;
+  EdgeSegments all_;
+  SegmentList list_;
+  std::vector<OwnVertex> own_, merged_;
+  std::vector<Range> stations_;
 };
+
+/// About how many vertices the runs of an edge have.
+std::size_t size_of_edge(const StationRequest& of, std::size_t edge) {
+  constexpr std::size_t of_unknown = 16;
+  std::size_t size = 1;
+  for (const EdgeRun& run : of.runs.of(edge)) {
+    const Division& division = of.divisions[run.patch];
+    const std::size_t known = of.stations ? of.stations->count(edge) : 0;
+    size += division.empty ? std::max(known, of_unknown)
+                           : static_cast<std::size_t>(division.border[static_cast<std::size_t>(run.side)].rate());
+  }
+  return size;
+}
+
+/// Edges that follow each other, and about how many vertices they have.
+struct BlockEdges {
+  std::uint32_t first, end;
+  std::size_t size;
+};
+
+/// Returns blocks of edges with about as many vertices.
+std::vector<BlockEdges> divide_edges(const StationRequest& of) {
+  constexpr std::size_t block_size = 1024;
+  const auto edges = static_cast<std::uint32_t>(of.runs.edges().edges.size());
+  std::vector<BlockEdges> blocks{{0, 0, 0}};
+  for (std::uint32_t edge = 0; edge < edges; ++edge) {
+    if (blocks.back().size >= block_size) blocks.push_back({edge, edge, 0});
+    blocks.back().end = edge + 1;
+    blocks.back().size += size_of_edge(of, edge);
+  }
+  return blocks;
+}
+
+/// Makes one list of the vertices that blocks have inserted. Runs may end at one place of a side in several blocks.
+void join_inserted(const std::vector<InsertedVertices>& blocks, StationVertices& out) {
+  std::vector<std::uint32_t> firsts, on_sides;
+  for (const InsertedVertices& block : blocks) {
+    const auto first = static_cast<std::uint32_t>(out.inserted.size());
+    firsts.push_back(first);
+    for (const std::uint32_t k : block.on_sides) on_sides.push_back(first + k);
+    out.inserted.insert(out.inserted.end(), block.all.begin(), block.all.end());
+  }
+  if (out.inserted.empty()) return;
+  std::vector<std::uint32_t> numbers(out.inserted.size());
+  std::iota(numbers.begin(), numbers.end(), std::uint32_t{0});
+  const auto place = [&](std::uint32_t k) { return out.inserted[k].place(); };
+  std::ranges::stable_sort(on_sides, {}, place);
+  for (std::size_t k = 1; k < on_sides.size(); ++k)
+    if (place(on_sides[k]) == place(on_sides[k - 1])) numbers[on_sides[k]] = numbers[on_sides[k - 1]];
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    if (blocks[k].all.empty()) continue;
+    const auto renumber = [&](PatchVertex& of) {
+      if (of.vertex & PatchVertex::inserted)
+        of.vertex = PatchVertex::inserted | numbers[firsts[k] + (of.vertex ^ PatchVertex::inserted)];
+    };
+    std::ranges::for_each(out.blocks[k].vertices, renumber);
+    for (StationBlock::Gap& gap : out.blocks[k].gaps) renumber(gap.low.vertex), renumber(gap.high.vertex);
+  }
+}
 
 }  // namespace
 
-Result<StationVertices> station_vertices(const EdgeRuns& runs, EdgeSegments& segments, double same_share,
-                                         std::span<const std::uint8_t> is_joined, bool with_uses,
-                                         const std::atomic<bool>* cancel) {
-  return StationLister(runs, segments, same_share, is_joined, with_uses).run(cancel);
+Result<StationVertices> station_vertices(const StationRequest& of) {
+  const std::vector<BlockEdges> blocks = divide_edges(of);
+  StationVertices out;
+  out.blocks.resize(blocks.size());
+  std::vector<InsertedVertices> inserted(blocks.size());
+  const auto list = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      StationLister lister(of, blocks[k].size, out.blocks[k]);
+      for (std::uint32_t edge = blocks[k].first; edge < blocks[k].end; ++edge) {
+        if (of.cancel && of.cancel->load()) return;
+        lister.add_edge(edge);
+      }
+      if (k + 1 == blocks.size()) lister.add_gaps();
+      inserted[k] = lister.finish();
+    }
+  };
+  if (Status status = parallel_for(blocks.size(), 1, {.cancel = of.cancel}, list); !status.ok()) return status;
+  join_inserted(inserted, out);
+  for (StationBlock& block : out.blocks) {
+    block.first_station = out.station_count;
+    out.station_count += block.station_count();
+  }
+  return out;
 }
 
 }}  // namespace tessera::abi_0_1

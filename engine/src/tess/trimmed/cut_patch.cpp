@@ -209,6 +209,7 @@ void CutPatchMaker::list_loop_segments(CutPatch& out) {
   if (cutter_.has_divided_chords()) {
     out.loop_segments = divided_chords(cutter_, numbers_, out.triangles);
   } else {
+    out.loop_segments.reserve(chords_);
     cutter_.for_loop_chords([&](const LoopChord& chord) {
       const std::uint32_t start = numbers_[chord.start], end = numbers_[chord.end];
       if (start != no_id && end != no_id) out.loop_segments.push_back({chord.piece, start, end, chord.from, chord.to});

@@ -4,15 +4,31 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
+namespace {
+
+/// Writes the Bernstein values, as bernstein_values() does.
+void write_values(int degree, double t, double* values) {
+  if (degree == 1)
+    values[0] = 1 - t, values[1] = t;
+  else
+    bernstein_values(degree, t, values);
+}
+
+/// Returns the point of a line v = const of control points.
+Homogeneous point_of_line(const HomogeneousNet& net, int j, const double* of_u) {
+  Homogeneous sum{0, 0, 0, 0};
+  const Homogeneous* p = &net.at(0, j);
+  for (int i = 0; i <= net.degree_u; ++i, p += net.degree_v + 1) sum = sum + of_u[i] * *p;
+  return sum;
+}
+
+}  // namespace
+
 void PatchPoints::begin_row(double u) {
   row_u_ = u;
   std::array<double, max_degree + 1> of_u;
-  bernstein_values(net_.degree_u, u, of_u.data());
-  for (int j = 0; j <= net_.degree_v; ++j) {
-    Homogeneous row{0, 0, 0, 0};
-    for (int i = 0; i <= net_.degree_u; ++i) row = row + of_u[static_cast<std::size_t>(i)] * net_.at(i, j);
-    row_[static_cast<std::size_t>(j)] = row;
-  }
+  write_values(net_.degree_u, u, of_u.data());
+  for (int j = 0; j <= net_.degree_v; ++j) row_[static_cast<std::size_t>(j)] = point_of_line(net_, j, of_u.data());
 }
 
 void PatchPoints::begin_row_du(double u) {
@@ -31,10 +47,16 @@ Vec3 PatchPoints::at(const ParameterPoint& local) {
   const auto is_end = [](double t) { return t == 0 || t == 1; };
   if (is_end(local.u) && is_end(local.v))
     return patch_.point(local.u > 0 ? net_.degree_u : 0, local.v > 0 ? net_.degree_v : 0) - origin_ + Vec3{};
+  Homogeneous sum{0, 0, 0, 0};
+  if (is_end(local.v) && local.u != row_u_) {  // the other lines would be added with values of 0
+    std::array<double, max_degree + 1> of_u;
+    write_values(net_.degree_u, local.u, of_u.data());
+    sum = sum + point_of_line(net_, local.v > 0 ? net_.degree_v : 0, of_u.data());
+    return net_.scale * sum.project();
+  }
   if (local.u != row_u_) begin_row(local.u);
   std::array<double, max_degree + 1> of_v;
-  bernstein_values(net_.degree_v, local.v, of_v.data());
-  Homogeneous sum{0, 0, 0, 0};
+  write_values(net_.degree_v, local.v, of_v.data());
   for (std::size_t j = 0; j <= static_cast<std::size_t>(net_.degree_v); ++j) sum = sum + of_v[j] * row_[j];
   return net_.scale * sum.project();
 }

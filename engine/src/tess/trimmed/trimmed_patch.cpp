@@ -116,9 +116,12 @@ double PatchCutter::add_chords(std::span<const TrimPiece> chain, std::uint32_t f
 bool PatchCutter::cut_crossing() { return crossings_.divide(points_, chords_, marks_) && cut(); }
 
 double PatchCutter::parameter(const LoopChord& chord, std::uint32_t point) const {
-  const ParameterPoint a = points_[chord.start], b = points_[chord.end], at = this->point(point);
-  if (point == chord.start || at == a) return chord.from;
-  if (point == chord.end || at == b) return chord.to;
+  if (point == chord.start) return chord.from;
+  const ParameterPoint a = points_[chord.start], b = points_[chord.end];
+  if (point == chord.end) return a == b ? chord.from : chord.to;
+  const ParameterPoint at = this->point(point);
+  if (at == a) return chord.from;
+  if (at == b) return chord.to;
   const ParameterPoint all = distance(a, b), part = distance(a, at);
   return chord.from + (chord.to - chord.from) * (all.u > all.v ? part.u / all.u : part.v / all.v);
 }
