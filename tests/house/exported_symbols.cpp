@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 43> internal_export{
+constexpr std::array<std::string_view, 44> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",

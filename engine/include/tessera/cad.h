@@ -110,8 +110,8 @@ struct CadOptions {
 /// Errors: the first warning's reason (no face is left), io_error (the file; the program cannot be started),
 /// parse_error (the reason is the reader's; a packed file is damaged), invalid_weight (IGES: OpenCASCADE would read
 /// another surface), unsupported (the extension; not a regular file; there is no program, or one of another version; a
-/// model that another version kept; a packed file beyond the limits, an archive of several files, or a build without zlib), out_of_memory, cancelled,
-/// internal (OpenCASCADE crashed; the program sent something else than a model).
+/// model that another version kept; a packed file beyond the limits, an archive of several files, or a build without
+/// zlib), out_of_memory, cancelled, internal (OpenCASCADE crashed; the program sent something else than a model).
 ///
 /// Threads: any. Signals and other children of the process are left alone.
 Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& options = {});
@@ -119,10 +119,10 @@ Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& opti
 /// the format if the options leave it open. Errors: as read_cad(), and io_error (no file in memory can be made for the
 /// program). Threads: any.
 Result<Model> parse_cad(std::string_view bytes, const std::filesystem::path& name, const CadOptions& options = {});
-/// Returns a model of read_cad() as bytes that read_cad() and parse_cad() take in place of a CAD file, under the name of
-/// any. They need no program for it, nor the time that the file takes: for browsers, and for files that are opened
-/// often. The bytes are for programs of the same version. Errors: unsupported (a surface that is no B-spline; index = the
-/// surface), out_of_memory. Threads: any.
+/// Returns a model of read_cad() as bytes that read_cad() and parse_cad() take in place of a CAD file, under its name.
+/// They need no program for it, nor the time that the file takes: for browsers, and for files that are opened often. The
+/// bytes are for programs of the same version. Errors: unsupported (a surface that is no B-spline; index = the surface),
+/// out_of_memory. Threads: any.
 Result<std::string> cad_model_bytes(const Model& model);
 /// Returns the program that read_cad() starts with these options; one that is named need not exist. Errors: unsupported
 /// (none is named or found). Threads: any.

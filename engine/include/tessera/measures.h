@@ -60,9 +60,9 @@ struct MeasureOptions {
 struct SurfaceMeasures {
   Measured area;           ///< of the kept part
   MeasuredPoint centroid;  ///< of the area; the middle of the control points' box, with its size, if the area may be 0
-  /// Whether the errors are proven. Not for surfaces that are approximated by a fit (see PatchGrid::fit_error()): errors
-  /// of their areas take the fit's for polynomials of the patches' degree. Nor for loops of quadrics that run along no
-  /// parameter (see grid_trims()), or for loops that touch or cross others.
+  /// Whether the errors are proven. Not for surfaces that are approximated by a fit (see PatchGrid::fit_error()):
+  /// errors of their areas take the fit's for polynomials of the patches' degree. Nor for loops of quadrics that run
+  /// along no parameter (see grid_trims()), or for loops that touch or cross others.
   bool proven = true;
 };
 

@@ -39,8 +39,8 @@ std::array<double, 2> net_lengths(const BezierPatch& patch) {
 }
 
 /// Adds an estimate of the error of an area by a surface's fit, whose slopes may differ from the surface's too. For
-/// that, the error is taken for a polynomial of the patch's degree n: over [0,1], its derivative is 2 n^2 times as large
-/// at most (A. A. Markov's inequality).
+/// that, the error is taken for a polynomial of the patch's degree n: over [0,1], its derivative is at most 2 n^2 times
+/// as large (A. A. Markov's inequality).
 void add_fit_error(const FitError& fit, const BezierPatch& patch, double reach, ExactSums& area) {
   if (!(fit.distance > 0)) return;
   const auto slope_error = [&](int degree) { return 2.0 * degree * degree * fit.distance; };

@@ -45,8 +45,8 @@ class ChordBlocks {
     if (size < 0) return {};
     return (1 + 0x1p-22) * double(size);  // because the packed control points were rounded
   }
-  /// `[block]`: a bit for each lane, set for all patches that have a border no longer than the reach from end to end, by
-  /// its largest coordinate, and for others about which bound() does not know.
+  /// `[block]`: a bit for each lane, set for all patches that have a border no longer than the reach from end to end,
+  /// by its largest coordinate, and for others about which bound() does not know.
   std::span<const std::uint16_t> short_sides() const { return short_sides_; }
   Source source(std::size_t block, std::size_t lane) const { return source_[block * lanes + lane]; }
   /// Returns the length to add to the chord: twice the distance of a patch from the sweep or the quadrilateral that it
