@@ -9,7 +9,7 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-/// What curve_parameter() and edge_parameter() return for a coedge with a table of parameters.
+/// The results of curve_parameter() and edge_parameter() for a coedge with a table of parameters.
 TESSERA_INTERNAL_EXPORT double tabled_curve_parameter(const Coedge& coedge, const Curve& curve, double s);
 TESSERA_INTERNAL_EXPORT double tabled_edge_parameter(const Coedge& coedge, double t);
 

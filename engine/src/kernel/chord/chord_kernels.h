@@ -18,7 +18,7 @@ struct ChordJob {
   float* unit = nullptr;    ///< `[lane]`: a power of two above the largest coefficient
   float* size = nullptr;    ///< `[lane]`: the largest coordinate of a control point, at least 2^-120
   float* hints = nullptr;   ///< `[lane]`: a sum of ChordHint; or null
-  /// Of may_be_point: the length of sides that welding may make points; none is as short as minus infinity.
+  /// For may_be_point: the length of sides that welding may make points; none is as short as minus infinity.
   float reach = -std::numeric_limits<float>::infinity();
   bool is_plane = false;  ///< rational patches without hints: all z are 0
 };

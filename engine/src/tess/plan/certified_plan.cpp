@@ -19,7 +19,7 @@ struct Sums {
   }
 };
 
-/// What loops cut out of patches and what edges add to them, patch by patch.
+/// The counts that loops cut out of patches and that edges add to them, patch by patch.
 class ExtraCounts {
  public:
   ExtraCounts(std::span<const CutPatch> cuts, const ClosedEdges* closed) : cuts_(cuts) {
