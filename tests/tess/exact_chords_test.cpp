@@ -233,7 +233,7 @@ TEST(ScaledSweeps, TheMixedDerivativeDoesNotCount) {
   EXPECT_GT(largest, 0.5);
 }
 
-std::vector<BezierPatch> cylinder(double height, const Vec3& shift) {
+std::vector<BezierPatch> shifted_cylinder(double height, const Vec3& shift) {
   const double w = std::sqrt(0.5);
   const Vec3 corners[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   std::vector<BezierPatch> patches;
@@ -248,7 +248,9 @@ std::vector<BezierPatch> cylinder(double height, const Vec3& shift) {
 
 TEST(ScaledSweeps, ACylinderTakesAsManyTrianglesAtAnyHeightAndPlace) {
   const auto triangles = [](double height, const Vec3& shift, double tolerance) {
-    return good(Tessellation::make(set_of(cylinder(height, shift)), {.tolerance = tolerance})).capacity().triangles;
+    return good(Tessellation::make(set_of(shifted_cylinder(height, shift)), {.tolerance = tolerance}))
+        .capacity()
+        .triangles;
   };
   for (const double height : {1.0, 4.0, 100.0}) {
     EXPECT_EQ(triangles(height, {}, 0.01), 48u) << height;
