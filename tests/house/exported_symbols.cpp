@@ -9,7 +9,7 @@
 namespace tessera::house {
 namespace {
 
-constexpr std::array<std::string_view, 44> internal_export{
+constexpr std::array<std::string_view, 46> internal_export{
     "tessera::ApartTasks::ApartTasks",
     "tessera::ApartTasks::run",
     "tessera::ApartTasks::~ApartTasks",
@@ -37,6 +37,8 @@ constexpr std::array<std::string_view, 44> internal_export{
     "tessera::BoxTree::BoxTree",
     "tessera::BoxTree::touches",
     "tessera::are_near",
+    "tessera::tabled_curve_parameter",
+    "tessera::tabled_edge_parameter",
     "tessera::tree_towards",
     "tessera::gauss_rule",
     "tessera::piece_directions",

@@ -120,9 +120,9 @@ Result<Model> read_cad(const std::filesystem::path& path, const CadOptions& opti
 /// program). Threads: any.
 Result<Model> parse_cad(std::string_view bytes, const std::filesystem::path& name, const CadOptions& options = {});
 /// Returns a model of read_cad() as bytes that read_cad() and parse_cad() take in place of a CAD file, under its name.
-/// They need no program for it, nor the time that the file takes: for browsers, and for files that are opened often. The
-/// bytes are for programs of the same version. Errors: unsupported (a surface that is no B-spline; index = the surface),
-/// out_of_memory. Threads: any.
+/// They need no program for it, nor the time that the file takes: for browsers, and for files that are opened often.
+/// The bytes are for programs of the same version. Errors: unsupported (a surface that is no B-spline; index = the
+/// surface), out_of_memory. Threads: any.
 Result<std::string> cad_model_bytes(const Model& model);
 /// Returns the program that read_cad() starts with these options; one that is named need not exist. Errors: unsupported
 /// (none is named or found). Threads: any.

@@ -181,13 +181,13 @@ PatchVertex EdgeSegments::insert_on_side(std::uint32_t patch, Side side, std::ui
   return {patch, PatchVertex::inserted | static_cast<std::uint32_t>(inserted_.all.size() - 1)};
 }
 
-EdgeEnd EdgeSegments::insert(const EdgeSegment& segment, const Interval& range, double s) {
+SegmentEnd EdgeSegments::insert(const EdgeSegment& segment, const Interval& range, double s) {
   const EdgeRun& run = *segment.run;
   const std::span<const TrimPiece> pieces = runs_.pieces(run);
   const CurveAlongEdge curve = runs_.curve(run);
   const double t = curve.to_curve(s);
   const ParameterPoint at = point_at(pieces, t);
-  EdgeEnd end{.s = s};
+  SegmentEnd end{.s = s};
   if (run.is_side) {
     end.vertex = insert_on_side(run.patch, run.side, segment.start, segment.end, along_side(run.side, at));
   } else {

@@ -41,7 +41,7 @@ struct PatchVertex {
 };
 
 /// An end of segments: a vertex of a patch.
-struct EdgeEnd {
+struct SegmentEnd {
   double s = 0;  ///< the edge's parameter
   PatchVertex vertex = {};
 };
@@ -56,11 +56,11 @@ struct EdgeSegment {
 
 /// Segments, and their ends, of which those that follow each other share one.
 struct SegmentList {
-  std::vector<EdgeEnd> ends;
+  std::vector<SegmentEnd> ends;
   std::vector<EdgeSegment> segments;
 
-  const EdgeEnd& low(const EdgeSegment& of) const { return ends[of.low]; }
-  const EdgeEnd& high(const EdgeSegment& of) const { return ends[of.high]; }
+  const SegmentEnd& low(const EdgeSegment& of) const { return ends[of.low]; }
+  const SegmentEnd& high(const EdgeSegment& of) const { return ends[of.high]; }
   /// Whether an end is the boundary's own vertex, so that each segment of a boundary counts once.
   bool begins(const EdgeSegment& of) const {
     return low(of).vertex.vertex == of.start || high(of).vertex.vertex == of.start;
@@ -82,7 +82,7 @@ class EdgeSegments {
   /// Appends the segments of lines that close gaps between curves. They have no parameters.
   void append_gaps(SegmentList& to);
   /// Inserts a vertex into a segment. `range`: the edge's parameters at the segment's ends; `s`: one between them.
-  EdgeEnd insert(const EdgeSegment& segment, const Interval& range, double s);
+  SegmentEnd insert(const EdgeSegment& segment, const Interval& range, double s);
 
   /// Vertices that are one, in pairs: corners of a face's patches, ends of chords on lines between them, and the points
   /// of a side that is one point.

@@ -142,7 +142,7 @@ void StationPlaces::number_places() {
 }
 
 bool StationPlaces::is_point(const StationBlock::Gap& gap) const {
-  const auto place = [&](const EdgeEnd& end) { return places_[nodes_[numbers_.of(end.vertex)]]; };
+  const auto place = [&](const SegmentEnd& end) { return places_[nodes_[numbers_.of(end.vertex)]]; };
   return place(gap.low) == place(gap.high) && place(gap.low) != no_id;
 }
 

@@ -79,7 +79,7 @@ class StationLister {
     if (uses > 2) std::ranges::stable_sort(own_, {}, &OwnVertex::s);
   }
   bool is_last(std::uint32_t end) const {
-    const EdgeEnd &last = list_.ends[own_.back().end], &next = list_.ends[end];
+    const SegmentEnd &last = list_.ends[own_.back().end], &next = list_.ends[end];
     return own_.back().end == end || (last.s == next.s && last.vertex == next.vertex);
   }
   /// Merges the vertices from place `middle` on into those before, which are sorted.

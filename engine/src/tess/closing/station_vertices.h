@@ -30,7 +30,7 @@ struct StationBlock {
   };
   /// A segment of a line that closes a gap between curves. No other patch has triangles on it.
   struct Gap {
-    EdgeEnd low, high;
+    SegmentEnd low, high;
     bool begins = false;  ///< see SegmentList::begins()
   };
   std::vector<Edge> edges;            ///< those with segments; after them one that begins where all stations end

@@ -217,19 +217,20 @@ void BorderHashes::find(const PatchSet::Impl& set, std::size_t block) {
        .hash = hashes_.data() + block * 4 * lanes});
 }
 
-SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes)
+SharedEdges::SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes,
+                         std::vector<std::uint32_t>* only_borders)
     : edges_(4 * set.patches.size(), no_id) {
   EdgeFinder finder(set, hashes, edges_);
   for (const BlockGroup& group : set.groups)
     for (std::size_t block = 0; block < group.block_count; ++block) finder.add(group, group.first_block + block);
-  only_borders_ = finder.take_only_borders();
-  count_ = only_borders_.size();
+  std::vector<std::uint32_t> found = finder.take_only_borders();
+  count_ = found.size();
+  if (only_borders) *only_borders = std::move(found);
 }
 
 void SharedEdges::renumber(std::span<const std::uint32_t> numbers) {
   for (std::uint32_t& edge : edges_)
     if (edge != no_id) edge = numbers[edge];
-  only_borders_ = {};
 }
 
 }}  // namespace tessera::abi_0_1

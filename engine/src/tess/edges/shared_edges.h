@@ -89,21 +89,20 @@ class SharedEdges {
  public:
   SharedEdges() = default;
   /// Finds the edges. They are numbered in the order of their first borders: by blocks, by patches, and by `all_sides`.
-  SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes);
+  /// `only_borders`: gets WeldRules::only_borders, unless null.
+  SharedEdges(const PatchSet::Impl& set, const BorderHashes& hashes,
+              std::vector<std::uint32_t>* only_borders = nullptr);
   /// `edges` by 4 * patch + side, below `count` or none.
   SharedEdges(std::vector<std::uint32_t> edges, std::size_t count) : edges_(std::move(edges)), count_(count) {}
 
   std::size_t count() const { return count_; }
   std::uint32_t edge(std::size_t patch, Side side) const { return edges_[4 * patch + static_cast<std::size_t>(side)]; }
   std::span<const std::uint32_t> of_borders() const { return edges_; }  ///< by 4 * patch + side
-  /// `[edge]`: its border if there is only one, counting those of curves, or none; empty where that is not known.
-  std::span<const std::uint32_t> only_borders() const { return only_borders_; }
   /// Gives each edge a new number, below count(), or none.
   void renumber(std::span<const std::uint32_t> numbers);
 
  private:
-  std::vector<std::uint32_t> edges_;         ///< `[patch][side]`
-  std::vector<std::uint32_t> only_borders_;  ///< `[edge]`
+  std::vector<std::uint32_t> edges_;  ///< `[patch][side]`
   std::size_t count_ = 0;
 };
 

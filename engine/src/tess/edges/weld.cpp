@@ -34,10 +34,10 @@ class Welder {
 
   Weld run(std::span<const double> roundings) {
     // Where only edges with a single border are joined, most sets need no more than the list of these.
-    const bool are_listed = rules_.is_relative && rules_.f64_patches.empty() && !edges_.only_borders().empty() &&
+    const bool are_listed = rules_.is_relative && rules_.f64_patches.empty() && !rules_.only_borders.empty() &&
                             std::ranges::none_of(shapes_, &PatchShape::is_curve);
     if (are_listed) {
-      leading_.assign(edges_.only_borders().begin(), edges_.only_borders().end());
+      leading_.assign(rules_.only_borders.begin(), rules_.only_borders.end());
       has_more_.assign(edges_.count(), 0);
     } else {
       find_leading();

@@ -62,6 +62,8 @@ struct WeldRules {
   /// ChordBlocks::short_sides() for this reach: no other patches have borders that become points. May be empty if the
   /// reach is 0.
   std::span<const std::uint16_t> short_sides = {};
+  /// `[edge]`: its border if there is only one, counting those of curves, or none. Empty if that is not known.
+  std::span<const std::uint32_t> only_borders = {};
 };
 
 /// Welds borders.

@@ -8,17 +8,19 @@
 
 namespace tessera { inline namespace abi_0_1 {
 
-Borders::Borders(const PatchNeeds& needs, SharedEdges edges, const CutFaces& faces) : edges_(std::move(edges)) {
+Borders::Borders(const PatchNeeds& needs, SharedEdges edges, std::span<const std::uint32_t> only_borders,
+                 const CutFaces& faces)
+    : edges_(std::move(edges)) {
   const PatchSet::Impl& set = needs.set();
   if (set.trims) {
     drawn_.assign(needs.shapes().begin(), needs.shapes().end());
     for (const PatchTrims::Cut& cut : set.trims->cuts) drawn_[cut.patch].is_curve = true;
   }
-  weld_by(needs, faces.runs ? &*faces.runs : nullptr);
+  weld_by(needs, only_borders, faces.runs ? &*faces.runs : nullptr);
   if (!faces.borders_in_step.empty()) find_in_step(faces.borders_in_step);
 }
 
-void Borders::weld_by(const PatchNeeds& needs, const EdgeRuns* runs) {
+void Borders::weld_by(const PatchNeeds& needs, std::span<const std::uint32_t> only_borders, const EdgeRuns* runs) {
   const PatchSet::Impl& set = needs.set();
   const PlannerOptions& options = needs.options();
   WeldRules rules = options.weld;
@@ -32,6 +34,8 @@ void Borders::weld_by(const PatchNeeds& needs, const EdgeRuns* runs) {
     const Box3 box = set.model_box();
     rules.reach = std::max(rules.reach, 0x1p-50 * std::max(max_abs(box.lower), max_abs(box.upper)));
     edges_ = parted_by_doubles(set, edges_);
+  } else {
+    rules.only_borders = only_borders;
   }
   if (!(rules.reach > 0) && rules.f64_patches.empty()) return;
   weld_ = weld_borders(set, shapes(needs), needs.roundings(), rules, edges_);

@@ -21,7 +21,8 @@ class Borders {
   Borders() = default;
   /// Welds the borders by the options of `needs`. `edges`: of the set, before welding; `faces`: without runs if edges
   /// of shapes stay open.
-  Borders(const PatchNeeds& needs, SharedEdges edges, const CutFaces& faces);
+  Borders(const PatchNeeds& needs, SharedEdges edges, std::span<const std::uint32_t> only_borders,
+          const CutFaces& faces);
 
   const SharedEdges& edges() const { return edges_; }  ///< after welding
   const Weld& weld() const { return weld_; }
@@ -42,7 +43,7 @@ class Borders {
   std::vector<std::uint8_t> against(const PatchNeeds& needs) const;
 
  private:
-  void weld_by(const PatchNeeds& needs, const EdgeRuns* runs);
+  void weld_by(const PatchNeeds& needs, std::span<const std::uint32_t> only_borders, const EdgeRuns* runs);
   /// `pairs`: as CutFaces::borders_in_step has them.
   void find_in_step(std::span<const std::array<std::uint32_t, 2>> pairs);
 

@@ -132,7 +132,7 @@ class CertifiedPlan {
 
   DividedPatches patches_;
   /// `[patch]`, and the number of all at the end.
-  UnsetVector<std::size_t> first_vertex_, first_triangle_, first_quad_;
+  std::vector<std::size_t> first_vertex_, first_triangle_, first_quad_;
   std::vector<RingSource> ring_sources_;  ///< `[border]`: itself if it owns its vertices; empty if nothing is shared
 };
 

@@ -12,7 +12,8 @@ namespace {
 
 /// The facts that loops and borders state, whatever the bounds are.
 struct EdgesAndFaces {
-  SharedEdges edges;  ///< before welding
+  SharedEdges edges;                        ///< before welding
+  std::vector<std::uint32_t> only_borders;  ///< see WeldRules
   CutFaces faces;
 };
 
@@ -28,6 +29,7 @@ Result<EdgesAndFaces> bound_and_find_edges(PatchNeeds& needs, const Execution& e
   Status status = parallel_for(blocks, 4 * blocks_per_task, quiet, hash);
   if (!status.ok()) return status;
   SharedEdges edges;
+  std::vector<std::uint32_t> only_borders;
   std::optional<Result<CutFaces>> faces;
   // One thread finds the edges, one after the other, and one follows the loops, while the others find the bounds.
   const std::size_t patches = keeps_turnings(needs.options()) ? set.patches.size() : 0,
@@ -35,7 +37,7 @@ Result<EdgesAndFaces> bound_and_find_edges(PatchNeeds& needs, const Execution& e
   const auto find_or_bound = [&](std::size_t begin, std::size_t end) {
     for (std::size_t piece = begin; piece < end; ++piece)
       if (piece == 0)
-        edges = SharedEdges(set, hashes);
+        edges = SharedEdges(set, hashes, &only_borders);
       else if (piece == 1)
         faces = CutFaces::of(set, needs.options().closes_edges, quiet);
       else if (piece < blocks + 2)
@@ -48,7 +50,7 @@ Result<EdgesAndFaces> bound_and_find_edges(PatchNeeds& needs, const Execution& e
   status = parallel_for(2 + blocks + normals, 1, execution, find_or_bound);
   if (!status.ok()) return status;
   if (!*faces) return faces->status();
-  return EdgesAndFaces{std::move(edges), **std::move(faces)};
+  return EdgesAndFaces{std::move(edges), std::move(only_borders), **std::move(faces)};
 }
 
 }  // namespace
@@ -59,7 +61,7 @@ Result<PlanFacts> find_plan_facts(const PatchSet::Impl& set, const PlannerOption
   Result<EdgesAndFaces> found = bound_and_find_edges(facts.needs, execution);
   if (!found) return found.status();
   facts.faces = std::move(found->faces);
-  facts.borders = Borders(facts.needs, std::move(found->edges), facts.faces);
+  facts.borders = Borders(facts.needs, std::move(found->edges), found->only_borders, facts.faces);
   facts.needs.take_weld(facts.borders.weld());
   if (Status status = facts.needs.bound_views(execution); !status.ok()) return status;
   return facts;
