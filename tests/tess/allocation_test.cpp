@@ -85,7 +85,7 @@ TEST(TessellationMemory, PlansOfOneFaceAreSmallBesideOthers) {
                        while (many.size() < 100) many.push_back(plan());
                      }));
   }
-  EXPECT_LE(least, 100 * 1048 + 9 * 1024);  // and the temporary memory of making one, with the lists of its pieces
+  EXPECT_LE(least, 100 * 1048 + 8192);  // and the temporary memory of making one
 }
 
 TEST(TessellationMemory, MeshesAreWrittenWithNextToNothingBeside) {

@@ -137,7 +137,7 @@ class Welder {
   /// Returns the edges that may be joined, in the order of their places.
   std::vector<EdgePlace> places() const {
     std::vector<EdgePlace> places;
-    places.reserve(64);
+    places.reserve(std::min<std::size_t>(64, leading_.size()));
     for (std::uint32_t edge = 0; edge < leading_.size(); ++edge) {
       const std::uint32_t border = leading_[edge];
       if (border == no_id || (rules_.is_relative && has_more_[edge])) continue;
