@@ -49,6 +49,16 @@ def call(function: Any, *arguments: Any) -> None:
         raise _error(status)
 
 
+def made_bytes(function: Any, *arguments: Any) -> bytes:
+    """Calls a function whose first argument is the place of a tsr_bytes. Returns a copy of these."""
+    handle, size = ctypes.c_void_p(), ctypes.c_size_t()
+    call(function, ctypes.byref(handle), *arguments)
+    try:
+        return ctypes.string_at(library.tsr_bytes_data(handle, ctypes.byref(size)), size.value)
+    finally:
+        library.tsr_release(handle)
+
+
 def run(
     function: Any, *arguments: Any, is_long: bool = True, progress: Progress | None = None, makes: Any = None
 ) -> None:

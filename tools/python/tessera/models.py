@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ._arrays import index_of, positive_of
-from ._calls import Handle, call
+from ._calls import Handle, call, made_bytes
 from ._library import library, struct
 from .jets import Jets, evaluate_surface
 from .live import ModelFile, WithLiveView
@@ -243,13 +243,7 @@ class Model(Handle, WithLiveView):
             call(library.tsr_model_save, self._handle, os.fsencode(path))
 
     def _cad_bytes(self) -> bytes:
-        handle, size = ctypes.c_void_p(), ctypes.c_size_t()
-        call(library.tsr_model_cad_bytes, ctypes.byref(handle), self._handle)
-        try:
-            data = library.tsr_bytes_data(handle, ctypes.byref(size))
-            return ctypes.string_at(data, size.value)
-        finally:
-            library.tsr_release(handle)
+        return made_bytes(library.tsr_model_cad_bytes, self._handle)
 
     def __repr__(self) -> str:
         info = self._info()
