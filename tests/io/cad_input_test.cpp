@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "io/cad/cad_reader.h"
+#include "io/cad/kept_model.h"
 #include "io/cad/model_bytes.h"
 #include "support/errors.h"
 #include "support/scratch_folder.h"

@@ -13,6 +13,7 @@
 #include <optional>
 #include <thread>
 
+#include "io/cad/kept_model.h"
 #include "io/cad/model_bytes.h"
 #include "support/errors.h"
 #include "support/scratch_folder.h"

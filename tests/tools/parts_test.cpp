@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "io/cad/cad_reader.h"
+#include "io/cad/kept_model.h"
 #include "io/cad/model_bytes.h"
 #include "support/synthetic_sets.h"
 #include "tessera/io.h"

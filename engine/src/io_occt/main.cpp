@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "io/cad/cad_reader.h"
+#include "io/cad/kept_model.h"
 #include "io/cad/model_bytes.h"
 #include "io_occt/load_model.h"
 

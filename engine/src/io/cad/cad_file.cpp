@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include "io/cad/cad_input.h"
-#include "io/cad/cad_reader.h"
 #include "io/cad/kept_model.h"
 #include "io/file/file.h"
 #include "tessera/io.h"

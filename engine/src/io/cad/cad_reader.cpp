@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "io/cad/child_process.h"
+#include "io/cad/kept_model.h"
 #include "io/cad/model_bytes.h"
 
 namespace tessera { inline namespace abi_0_1 {

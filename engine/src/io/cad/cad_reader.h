@@ -35,13 +35,6 @@ CadFormat cad_format_of(const std::filesystem::path& path);
 /// ", .brep, .brp, ...": the end of a list of formats.
 std::string listed_cad_extensions();
 
-constexpr std::string_view greeting_begin = "tessera-cad-reader ";  ///< of every version
-constexpr std::size_t greeting_size = 64;
-/// The first bytes that a reader prints: its version and that of model_bytes.h, padded with blanks.
-std::string cad_reader_greeting();
-/// Words in quotation marks, without blanks at their end, without what terminals obey, and not too long.
-std::string quoted_words(std::string_view words);
-
 /// Bounds on one file. They end a reader that a damaged file sends astray.
 struct CadReaderLimits {
   std::uint64_t memory_bytes = 0;

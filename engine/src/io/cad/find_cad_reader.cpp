@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/cad/cad_reader.h"
+#include "io/cad/kept_model.h"
 #include "tessera/cad.h"
 #include "tessera/guard.h"
 

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "base/text.h"
-#include "io/cad/cad_reader.h"
 #include "io/cad/model_bytes.h"
 #include "tessera/cad.h"
 #include "tessera/guard.h"
