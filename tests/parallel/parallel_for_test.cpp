@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace tessera::test { namespace {
@@ -74,6 +75,24 @@ TEST(ParallelFor, StopsWhenCancelled) {
   });
   EXPECT_EQ(status.code(), StatusCode::cancelled);
   EXPECT_LT(pieces, 1000u);
+}
+
+TEST(ParallelFor, AFlagThatIsLoweredAgainHidesNoMissingPiece) {
+  constexpr std::size_t count = 200'000;
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    std::atomic<bool> cancel = false, is_over = false;
+    std::thread lowers([&] {
+      while (!cancel && !is_over) std::this_thread::yield();
+      cancel = false;
+    });
+    std::atomic<std::size_t> pieces = 0;
+    const Status status = parallel_for(count, 1, {.cancel = &cancel}, [&](std::size_t, std::size_t) {
+      if (++pieces == 1000) cancel = true;
+    });
+    is_over = true;
+    lowers.join();
+    EXPECT_EQ(status.ok(), pieces == count) << pieces;
+  }
 }
 
 TEST(ParallelFor, ProgressRisesToOne) {

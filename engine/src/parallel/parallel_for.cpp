@@ -43,7 +43,12 @@ Status parallel_for(std::size_t count, std::size_t grain, const Execution& execu
     const std::size_t pieces = count / grain + (count % grain != 0);
     if (execution.report) execution.report->tasks = pieces;
     Progress progress(execution, pieces);
-    const auto cancelled = [&] { return execution.cancel && execution.cancel->load(std::memory_order_relaxed); };
+    std::atomic<bool> was_cancelled = false;  // the flag may be lowered again, but pieces are missing
+    const auto cancelled = [&] {
+      if (execution.cancel && execution.cancel->load(std::memory_order_relaxed))
+        was_cancelled.store(true, std::memory_order_relaxed);
+      return was_cancelled.load(std::memory_order_relaxed);
+    };
     const auto run_piece = [&](std::size_t piece) {
       if (cancelled()) return;
       body(piece * grain, std::min(count, (piece + 1) * grain));
