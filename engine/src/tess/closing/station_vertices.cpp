@@ -1,6 +1,7 @@
 #include "tess/closing/station_vertices.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -255,11 +256,15 @@ Result<StationVertices> station_vertices(const StationRequest& of) {
   StationVertices out;
   out.blocks.resize(blocks.size());
   std::vector<InsertedVertices> inserted(blocks.size());
+  std::atomic<bool> was_cancelled = false;  // within a block, which then has no end
   const auto list = [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       StationLister lister(of, blocks[k].size, out.blocks[k]);
       for (std::uint32_t edge = blocks[k].first; edge < blocks[k].end; ++edge) {
-        if (of.cancel && of.cancel->load()) return;
+        if (of.cancel && of.cancel->load()) {
+          was_cancelled = true;
+          return;
+        }
         lister.add_edge(edge);
       }
       if (k + 1 == blocks.size()) lister.add_gaps();
@@ -267,6 +272,7 @@ Result<StationVertices> station_vertices(const StationRequest& of) {
     }
   };
   if (Status status = parallel_for(blocks.size(), 1, {.cancel = of.cancel}, list); !status.ok()) return status;
+  if (was_cancelled) return Status(StatusCode::cancelled, "cancelled by the caller");
   join_inserted(inserted, out);
   for (StationBlock& block : out.blocks) {
     block.first_station = out.station_count;
